@@ -1,0 +1,1 @@
+"""The harness: cases, runs, reports, benchmarks."""

@@ -1,0 +1,1 @@
+"""Independent truth: closed forms, finite elements, the block lattice, errata."""

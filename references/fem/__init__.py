@@ -1,0 +1,1 @@
+"""Finite-element references: scikit-fem on gmsh meshes."""

@@ -1,0 +1,1 @@
+"""Fields of continuum-molecular (micropolar bond-based peridynamic) scenes."""
