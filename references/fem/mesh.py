@@ -1,0 +1,393 @@
+"""Triangular gmsh meshes as plain arrays: discs, rectangles, holes, and cracks as real slits."""
+
+import ctypes.util
+import hashlib
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from references.fem.slit import boundary_edges, split_along
+
+# gmsh's wheel links against the desktop's libraries, which slim containers lack.
+_DEBIAN_PACKAGES = {
+    "GLU": "libglu1-mesa",
+    "GL": "libgl1",
+    "X11": "libx11-6",
+    "Xcursor": "libxcursor1",
+    "Xext": "libxext6",
+    "Xfixes": "libxfixes3",
+    "Xft": "libxft2",
+    "Xinerama": "libxinerama1",
+    "Xrender": "libxrender1",
+    "fontconfig": "libfontconfig1",
+    "gomp": "libgomp1",
+}
+
+# gmsh has one global session for each process.
+_session_lock = threading.RLock()
+
+
+class MeshingUnavailableError(RuntimeError):
+    """gmsh cannot be loaded; the message names the system library it misses."""
+
+
+def missing_libraries() -> dict[str, str]:
+    """System libraries that gmsh needs and this machine lacks.
+
+    Returns
+    -------
+    dict
+        Library name -> Debian package that brings it; empty if nothing is missing.
+    """
+    return {k: v for k, v in _DEBIAN_PACKAGES.items() if ctypes.util.find_library(k) is None}
+
+
+def load_gmsh() -> ModuleType:
+    """Import gmsh, or say which system library is missing.
+
+    Raises
+    ------
+    MeshingUnavailableError
+        If the module or one of its shared libraries cannot be loaded.
+    """
+    try:
+        import gmsh
+    except (OSError, ImportError) as error:
+        missing = missing_libraries()
+        hint = f" Missing: {', '.join(missing)}; on Debian: apt-get install " + " ".join(
+            missing.values()
+        )
+        raise MeshingUnavailableError(
+            f"gmsh, which makes the finite-element meshes, cannot be loaded: {error}."
+            + (hint if missing else " Install it with: pip install gmsh")
+        ) from error
+    return gmsh
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Straight-edged triangles.
+
+    A curved boundary is replaced by chords between nodes *on* the curve. The quadratic elements'
+    mid-side nodes therefore lie on the chords, and Dirichlet data are taken at the nodes' actual
+    positions: the discrete domain is a polygon in which the exact field still holds, so that
+    what is measured is the error of the field and not that of the geometry.
+
+    Attributes
+    ----------
+    points : (N, 2) float array
+        Nodes; the two faces of a crack have nodes of their own and share its tips.
+    triangles : (M, 3) int array
+        Counter-clockwise.
+    boundaries : dict of str to (k, 2) int array
+        Named sets of boundary edges as pairs of nodes.
+    outer : tuple of str
+        Names that make up the outer edge; holes and crack faces are the others.
+    size : float
+        The largest element size that was asked for.
+    tips : (k, 2) float array
+        Crack tips inside the body.
+    """
+
+    points: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+    boundaries: Mapping[str, NDArray[np.int64]]
+    outer: tuple[str, ...]
+    size: float
+    tips: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 2)))
+
+    def nodes(self, name: str) -> NDArray[np.int64]:
+        """Sorted vertices of a named boundary."""
+        if name not in self.boundaries:
+            raise ValueError(
+                f"the mesh has no boundary {name!r}, only {', '.join(self.boundaries)}"
+            )
+        return np.unique(self.boundaries[name])
+
+    @property
+    def area(self) -> float:
+        """Area of the polygon."""
+        a, b, c = (self.points[self.triangles[:, i]] for i in range(3))
+        return float(0.5 * np.sum(_cross(b - a, c - a)))
+
+    @property
+    def sha256(self) -> str:
+        """Hash of nodes and triangles: the same mesh, bit for bit."""
+        digest = hashlib.sha256(np.ascontiguousarray(self.points).tobytes())
+        digest.update(np.ascontiguousarray(self.triangles, dtype=np.int64).tobytes())
+        return digest.hexdigest()
+
+
+def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+@contextmanager
+def _session(options: Mapping[str, float]) -> Iterator[ModuleType]:
+    """A gmsh model of our own that leaves nothing behind, even inside somebody's session."""
+    gmsh = load_gmsh()
+    with _session_lock:
+        ours = not gmsh.isInitialized()
+        if ours:
+            # no signal handler: that works only in a process's main thread
+            gmsh.initialize(readConfigFiles=False, interruptible=False)
+            previous = None
+        else:
+            previous = gmsh.model.getCurrent()
+        options = {"General.Terminal": 0, "General.NumThreads": 1, **options}
+        before = {name: gmsh.option.getNumber(name) for name in options}
+        try:
+            for name, value in options.items():
+                gmsh.option.setNumber(name, value)
+            gmsh.model.add("cmverify-reference")
+            yield gmsh
+        finally:
+            gmsh.model.setCurrent("cmverify-reference")
+            gmsh.model.remove()
+            for name, value in before.items():
+                gmsh.option.setNumber(name, value)
+            if ours:
+                gmsh.finalize()
+            elif previous:
+                gmsh.model.setCurrent(previous)
+
+
+Segment = tuple[tuple[float, float], tuple[float, float]]
+
+
+def _triangulate(
+    draw: Callable[[ModuleType], int],
+    name_edges: Callable[[NDArray[np.float64]], dict[str, NDArray[np.bool_]]],
+    outer: tuple[str, ...],
+    size: float,
+    cracks: Sequence[Segment],
+    refine: Sequence[tuple[tuple[float, float], float]],
+    growth: float,
+) -> Mesh:
+    """Mesh what ``draw`` makes, split it along the cracks and name its edges.
+
+    ``refine`` lists points with the element size there; away from them it grows by ``growth``
+    per unit length.
+    """
+    if not np.isfinite(size) or size <= 0:
+        raise ValueError(f"the element size must be positive, not {size}")
+    if any(h <= 0 for _, h in refine):
+        raise ValueError("the element size at a crack tip or hole must be positive")
+    options = {
+        "Mesh.MeshSizeMax": size,
+        "Mesh.MeshSizeExtendFromBoundary": 0,
+        "Mesh.MeshSizeFromPoints": 0,
+        "Mesh.Algorithm": 6,
+        "Mesh.RandomSeed": 1,
+    }
+    with _session(options) as gmsh:
+        occ = gmsh.model.occ
+        surface = draw(gmsh)
+        lines: list[tuple[int, int]] = []
+        for start, end in cracks:
+            ends = [occ.addPoint(*start, 0), occ.addPoint(*end, 0)]
+            lines.append((1, occ.addLine(*ends)))
+        mapped: list[list[tuple[int, int]]] = []
+        if lines:
+            _, mapped = occ.fragment([(2, surface)], lines)
+        occ.synchronize()
+        fields = [gmsh.model.mesh.field.add("MathEval")]
+        gmsh.model.mesh.field.setString(fields[0], "F", repr(float(size)))
+        for (x, y), h in refine:
+            fields.append(gmsh.model.mesh.field.add("MathEval"))
+            radius = f"sqrt((x-({x!r}))^2+(y-({y!r}))^2)"
+            gmsh.model.mesh.field.setString(fields[-1], "F", f"{h!r}+{growth!r}*{radius}")
+        background = gmsh.model.mesh.field.add("Min")
+        gmsh.model.mesh.field.setNumbers(background, "FieldsList", fields)
+        gmsh.model.mesh.field.setAsBackgroundMesh(background)
+        gmsh.model.mesh.generate(2)
+        tags, flat, _ = gmsh.model.mesh.getNodes()
+        _, connectivity = gmsh.model.mesh.getElementsByType(2)
+        crack_tags = [
+            gmsh.model.mesh.getElementsByType(1, tag)[1]
+            for pieces in mapped[1:]
+            for dimension, tag in pieces
+            if dimension == 1
+        ]
+    number = np.full(int(tags.max()) + 1, -1, dtype=np.int64)
+    number[tags.astype(np.int64)] = np.arange(len(tags))
+    points = flat.reshape(-1, 3)[:, :2].copy()
+    triangles = number[connectivity.astype(np.int64)].reshape(-1, 3)
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    clockwise = _cross(b - a, c - a) < 0
+    triangles[clockwise] = triangles[clockwise][:, ::-1]
+    crack_edges = (
+        number[np.concatenate(crack_tags).astype(np.int64)].reshape(-1, 2)
+        if crack_tags
+        else np.zeros((0, 2), dtype=np.int64)
+    )
+    # keep only nodes of triangles (the ends of a crack may be isolated points)
+    used, inverse = np.unique(triangles, return_inverse=True)
+    renumber = np.full(len(points), -1, dtype=np.int64)
+    renumber[used] = np.arange(len(used))
+    points, triangles = points[used], inverse.reshape(-1, 3)
+    crack_edges = renumber[crack_edges]
+    tips = np.zeros((0, 2))
+    if len(crack_edges):
+        points, triangles, tip_nodes = split_along(points, triangles, crack_edges)
+        tips = points[tip_nodes]
+    edges = boundary_edges(triangles)
+    crack = np.zeros(len(edges), dtype=bool)
+    for start, end in cracks:
+        crack |= _on_segment(points[edges], start, end, 1e-9 * size)
+    free = edges[~crack]
+    names = name_edges(points[free].mean(axis=1))
+    boundaries = {name: free[mask] for name, mask in names.items()}
+    if cracks:
+        boundaries["crack"] = edges[crack]
+    return Mesh(points, triangles, boundaries, outer, float(size), tips)
+
+
+def _on_segment(
+    edges: NDArray[np.float64], start: ArrayLike, end: ArrayLike, tolerance: float
+) -> NDArray[np.bool_]:
+    """Which edges (k, 2 ends, 2) lie on a segment."""
+    start, direction = np.asarray(start, float), np.subtract(end, start).astype(float)
+    length = np.hypot(*direction)
+    relative = edges - start
+    across = np.abs(_cross(np.broadcast_to(direction, relative.shape), relative)) / length
+    along = relative @ direction / length
+    inside = (along >= -tolerance) & (along <= length + tolerance)
+    return np.asarray(((across <= tolerance) & inside).all(axis=1))
+
+
+def disc(
+    size: float,
+    radius: float = 1.0,
+    cracks: Sequence[Segment] = (),
+    tip_size: float | None = None,
+    growth: float = 0.15,
+) -> Mesh:
+    """A disc about the origin, with straight cracks if asked for.
+
+    Parameters
+    ----------
+    size : float
+        Largest element size.
+    radius : float
+        Of the disc; its boundary is called ``circle``.
+    cracks : sequence of ((x, y), (x, y))
+        Slits with two faces (boundary ``crack``); an end on the circle opens there.
+    tip_size : float, optional
+        Element size at the tips inside; away from them it grows by ``growth`` per unit length.
+
+    Returns
+    -------
+    Mesh
+
+    Examples
+    --------
+    >>> mesh = disc(0.2)
+    >>> bool(abs(mesh.area - 3.14159) < 0.03)
+    True
+    """
+    if radius <= 0:
+        raise ValueError(f"the disc's radius must be positive, not {radius}")
+
+    def draw(gmsh: ModuleType) -> int:
+        return int(gmsh.model.occ.addDisk(0, 0, 0, radius, radius))
+
+    def names(middle: NDArray[np.float64]) -> dict[str, NDArray[np.bool_]]:
+        return {"circle": np.ones(len(middle), dtype=bool)}
+
+    ends = [p for crack in cracks for p in crack]
+    if any(np.hypot(*p) > radius * (1 + 1e-12) for p in ends):
+        raise ValueError("a crack ends outside the disc")
+    inner = [p for p in ends if np.hypot(*p) < radius * (1 - 1e-9)]
+    refine = [(p, float(tip_size)) for p in inner] if tip_size else []
+    return _triangulate(draw, names, ("circle",), size, cracks, refine, growth)
+
+
+def crack_tip_disc(
+    size: float, radius: float = 1.0, tip_size: float | None = None, growth: float = 0.15
+) -> Mesh:
+    """Disc with a slit from (-radius, 0) to its centre, as in the crack-tip problem (Sect. 2.3.1).
+
+    The faces are traction-free boundaries called ``crack``.
+    """
+    return disc(size, radius, [((-radius, 0.0), (0.0, 0.0))], tip_size, growth)
+
+
+def rectangle(
+    width: float,
+    height: float,
+    size: float,
+    holes: Sequence[tuple[float, float, float]] = (),
+    cracks: Sequence[Segment] = (),
+    tip_size: float | None = None,
+    hole_size: float | None = None,
+    growth: float = 0.15,
+) -> Mesh:
+    """A rectangle about the origin, with round holes and straight cracks if asked for.
+
+    Parameters
+    ----------
+    width, height, size : float
+        Sides and largest element size.
+    holes : sequence of (x, y, radius)
+        Boundaries ``hole0``, ``hole1``, …
+    cracks : sequence of ((x, y), (x, y))
+        As in :func:`disc`; the outer edges are ``left``, ``right``, ``bottom``, ``top``.
+    tip_size, hole_size, growth : float, optional
+        Element size at crack tips and on the holes' edges, growing by ``growth`` per unit length.
+
+    Raises
+    ------
+    ValueError
+        If a side is not positive, or a hole or crack leaves the rectangle.
+    """
+    if width <= 0 or height <= 0:
+        raise ValueError("the rectangle's sides must be positive")
+    half = np.array([width, height]) / 2
+    for x, y, r in holes:
+        if r <= 0 or abs(x) + r >= half[0] or abs(y) + r >= half[1]:
+            raise ValueError(f"the hole at ({x}, {y}) of radius {r} does not lie in the rectangle")
+    for end in (p for crack in cracks for p in crack):
+        if np.any(np.abs(end) > half * (1 + 1e-12)):
+            raise ValueError(f"the crack end {end} lies outside the rectangle")
+
+    def draw(gmsh: ModuleType) -> int:
+        occ = gmsh.model.occ
+        body = occ.addRectangle(-half[0], -half[1], 0, width, height)
+        if holes:
+            discs = [(2, occ.addDisk(x, y, 0, r, r)) for x, y, r in holes]
+            (_, body), *_ = occ.cut([(2, body)], discs)[0]
+        return int(body)
+
+    def names(middle: NDArray[np.float64]) -> dict[str, NDArray[np.bool_]]:
+        x, y = middle.T
+        near = 1e-9 * max(width, height)
+        found = {
+            "left": np.abs(x + half[0]) < near,
+            "right": np.abs(x - half[0]) < near,
+            "bottom": np.abs(y + half[1]) < near,
+            "top": np.abs(y - half[1]) < near,
+        }
+        rest = ~np.logical_or.reduce(list(found.values()))
+        for i, (hx, hy, r) in enumerate(holes):
+            found[f"hole{i}"] = rest & (np.hypot(x - hx, y - hy) < r * (1 + 1e-9))
+        return found
+
+    refine: list[tuple[tuple[float, float], float]] = []
+    if tip_size:
+        ends = [p for crack in cracks for p in crack]
+        refine += [(p, float(tip_size)) for p in ends if np.all(np.abs(p) < half * (1 - 1e-9))]
+    if hole_size:
+        for x, y, r in holes:
+            around = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+            refine += [
+                ((float(x + r * np.cos(t)), float(y + r * np.sin(t))), float(hole_size))
+                for t in around
+            ]
+    outer = ("left", "right", "bottom", "top")
+    return _triangulate(draw, names, outer, size, cracks, refine, growth)
