@@ -1,0 +1,266 @@
+"""What a verification case is: methods that measure, and checks that judge.
+
+A `Case` is declared once. pytest, asv, the command line and the report read the same object, so
+that nothing is described twice. This module holds data only: running is `runner`'s business,
+judging is `verdict`'s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Level(StrEnum):
+    """How much time a run may take: seconds, a minute, or the paper's resolution."""
+
+    QUICK = "quick"
+    STANDARD = "standard"
+    PAPER = "paper"
+
+
+@dataclass(frozen=True)
+class Field:
+    """One scalar field beside its reference, at the points of a `FieldSet`.
+
+    Attributes
+    ----------
+    label : str
+        Symbol as a figure prints it, matplotlib mathtext allowed.
+    unit : str
+        Unit of both arrays; "1" for a number.
+    computed, reference : (N,) arrays
+    """
+
+    label: str
+    unit: str
+    computed: Array
+    reference: Array
+
+    @property
+    def difference(self) -> Array:
+        """Computed minus reference, (N,)."""
+        return self.computed - self.reference
+
+
+@dataclass(frozen=True)
+class FieldSet:
+    """Fields over the plane: on lattice points, or on the vertices of triangles.
+
+    Attributes
+    ----------
+    points : (N, 2) array, in metres or in units of the case's length
+    items : mapping from a file-safe key to a `Field`
+    spacing : grid spacing of a lattice; None for a mesh
+    triangles : (M, 3) integer array for a mesh; None for a lattice
+    """
+
+    points: Array
+    items: Mapping[str, Field]
+    spacing: float | None = None
+    triangles: NDArray[np.int64] | None = None
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Computed values along a line, with the reference at the same abscissae, all (M,)."""
+
+    label: str
+    abscissa: Array
+    computed: Array
+    reference: Array
+
+
+@dataclass(frozen=True)
+class LinePlot:
+    """A line plot as the paper draws them: one or more curves over one abscissa.
+
+    `over_resolutions` asks the report to draw the first curve at every resolution that was run
+    (the paper's Fig. 9) instead of all the curves at the finest.
+    """
+
+    title: str
+    xlabel: str
+    ylabel: str
+    curves: tuple[Curve, ...]
+    over_resolutions: bool = False
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """What one method gives at one resolution.
+
+    Attributes
+    ----------
+    unknowns : int
+        Size of the linear system that was solved.
+    quantities : mapping
+        Named figures that checks judge, such as relative L2 errors.
+    seconds : mapping
+        Wall seconds by stage ("setup", "solve", ...), JIT compilation excluded.
+    statistics : mapping
+        Whatever else is worth a column: iterations, residual, bonds, method chosen.
+    fields, lines
+        What the report draws; may be left out.
+    """
+
+    unknowns: int
+    quantities: Mapping[str, float]
+    seconds: Mapping[str, float] = field(default_factory=dict)
+    statistics: Mapping[str, float | int | str] = field(default_factory=dict)
+    fields: FieldSet | None = None
+    lines: tuple[LinePlot, ...] = ()
+
+    @property
+    def total_seconds(self) -> float:
+        """Set-up and solve together; stages of post-processing do not count."""
+        return sum(self.seconds.get(stage, 0.0) for stage in ("setup", "solve"))
+
+
+@dataclass(frozen=True)
+class Method:
+    """A way to solve the case's problem.
+
+    Attributes
+    ----------
+    name : str
+        Such as "bond/lattice" or "fem/P2".
+    kind : "bond" or "fem"
+    run : callable
+        Takes a resolution n (spacing or mesh size a/n) and returns a `Measurement`.
+    resolutions : mapping from Level to a tuple of ascending n
+    warm_up : callable
+        Compiles what `run` needs, so that no measured second is a compiler's.
+    """
+
+    name: str
+    kind: Literal["bond", "fem"]
+    run: Callable[[int], Measurement]
+    resolutions: Mapping[Level, tuple[int, ...]]
+    warm_up: Callable[[], None] = lambda: None
+
+    @property
+    def coarsest(self) -> int:
+        """The smallest resolution of any level."""
+        return min(n for ladder in self.resolutions.values() for n in ladder)
+
+
+@dataclass(frozen=True)
+class OrderBand:
+    """Bounds for the observed order between the two finest resolutions that were run.
+
+    Parameters
+    ----------
+    low, high : float
+        The order must lie between them: too high is as suspicious as too low.
+    since : int
+        Resolutions below this one are pre-asymptotic and are not used.
+    floor : float
+        Where an error is below it, rounding decides the order and none is judged.
+    """
+
+    low: float
+    high: float
+    since: int = 0
+    floor: float = 1e-13
+
+
+@dataclass(frozen=True)
+class Check:
+    """What must hold for one quantity of one method.
+
+    Attributes
+    ----------
+    at_most : mapping from resolution to an absolute bound
+        Between listed resolutions the bound of the next coarser one holds: an error may not grow
+        under refinement.
+    equals : mapping from resolution to an exact value
+    order : OrderBand, optional
+    source : str
+        Where the bounds come from.
+    """
+
+    method: str
+    quantity: str
+    at_most: Mapping[int, float] = field(default_factory=dict)
+    equals: Mapping[int, float] = field(default_factory=dict)
+    order: OrderBand | None = None
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.at_most and not self.equals and self.order is None:
+            raise ValueError(f"check of {self.method}/{self.quantity} can never fail: no bound")
+
+    def bound_at(self, resolution: int) -> float | None:
+        """The absolute bound that holds at a resolution, or None below the coarsest listed."""
+        listed = [n for n in self.at_most if n <= resolution]
+        return self.at_most[max(listed)] if listed else None
+
+
+@dataclass(frozen=True)
+class Case:
+    """A benchmark problem with everything that is to be said about it.
+
+    Attributes
+    ----------
+    name : str
+        As the command line knows it.
+    title, section, equations, figures
+        What it is and where the paper has it.
+    shows : str
+        In a sentence, what a passed case shows.
+    quantities : mapping from the name of a quantity to its description
+    primary : str
+        The quantity that convergence and work-precision plots show.
+    featured : str
+        The method whose fields and lines the report draws.
+    length : str
+        The length that resolutions divide: spacing = length/n.
+    """
+
+    name: str
+    title: str
+    section: str
+    shows: str
+    methods: tuple[Method, ...]
+    checks: tuple[Check, ...]
+    quantities: Mapping[str, str]
+    primary: str
+    featured: str
+    equations: tuple[str, ...] = ()
+    figures: tuple[str, ...] = ()
+    tags: tuple[str, ...] = ()
+    length: str = "a"
+
+    def __post_init__(self) -> None:
+        names = [method.name for method in self.methods]
+        if len(set(names)) != len(names):
+            raise ValueError(f"case {self.name}: method names are not unique: {names}")
+        if self.featured not in names:
+            raise ValueError(f"case {self.name}: featured method {self.featured!r} is not declared")
+        if self.primary not in self.quantities:
+            raise ValueError(f"case {self.name}: primary quantity {self.primary!r} is undescribed")
+        for check in self.checks:
+            if check.method not in names:
+                raise ValueError(f"case {self.name}: check of unknown method {check.method!r}")
+            if check.quantity not in self.quantities:
+                raise ValueError(f"case {self.name}: check of undescribed {check.quantity!r}")
+
+    def method(self, name: str) -> Method:
+        """The method of that name; KeyError if there is none."""
+        for method in self.methods:
+            if method.name == name:
+                return method
+        raise KeyError(f"case {self.name} has no method {name!r}")
+
+    def plan(self, level: Level) -> Iterator[tuple[Method, int]]:
+        """Every (method, resolution) of a level, coarse ones first."""
+        pairs = [(m, n) for m in self.methods for n in m.resolutions.get(level, ())]
+        yield from sorted(pairs, key=lambda pair: pair[1])

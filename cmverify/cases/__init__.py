@@ -1,0 +1,1 @@
+"""One module a benchmark problem; `registry` finds them."""

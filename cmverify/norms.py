@@ -1,0 +1,35 @@
+"""The norms in which the suite states its errors."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+
+def relative_l2(computed: ArrayLike, reference: ArrayLike) -> float:
+    """Relative L2 difference over points, ``sqrt(sum |a - b|^2) / sqrt(sum |b|^2)``.
+
+    Parameters
+    ----------
+    computed, reference : arrays of equal shape, (N,) or (N, components)
+
+    Returns
+    -------
+    float
+        NaN if either array holds one: an error that is not a number has to stay visible.
+
+    Raises
+    ------
+    ValueError
+        If the shapes differ, nothing is to be compared, or the reference vanishes everywhere.
+    """
+    a = np.asarray(computed, dtype=float)
+    b = np.asarray(reference, dtype=float)
+    if a.shape != b.shape:
+        raise ValueError(f"computed {a.shape} and reference {b.shape} do not match")
+    if a.size == 0:
+        raise ValueError("no points to compare")
+    scale = np.linalg.norm(b)
+    if scale == 0.0:
+        raise ValueError("the reference vanishes everywhere: a relative error has no meaning")
+    return float(np.linalg.norm(a - b) / scale)
