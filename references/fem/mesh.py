@@ -5,7 +5,7 @@ import hashlib
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import ModuleType
 
 import numpy as np
@@ -114,6 +114,12 @@ class Mesh:
         """Area of the polygon."""
         a, b, c = (self.points[self.triangles[:, i]] for i in range(3))
         return float(0.5 * np.sum(_cross(b - a, c - a)))
+
+    def scaled(self, factor: float) -> "Mesh":
+        """The same mesh, ``factor`` times larger."""
+        return replace(
+            self, points=self.points * factor, size=self.size * factor, tips=self.tips * factor
+        )
 
     @property
     def sha256(self) -> str:
@@ -261,6 +267,10 @@ def _on_segment(
     return np.asarray(((across <= tolerance) & inside).all(axis=1))
 
 
+def _shrunk(cracks: Sequence[Segment], scale: float) -> list[Segment]:
+    return [((a / scale, b / scale), (c / scale, d / scale)) for (a, b), (c, d) in cracks]
+
+
 def disc(
     size: float,
     radius: float = 1.0,
@@ -293,17 +303,21 @@ def disc(
     """
     if radius <= 0:
         raise ValueError(f"the disc's radius must be positive, not {radius}")
+    if radius != 1:
+        # gmsh's tolerances are absolute: mesh at unit scale, so that size does not matter
+        scaled_cracks, scaled_tip = _shrunk(cracks, radius), tip_size and tip_size / radius
+        return disc(size / radius, 1.0, scaled_cracks, scaled_tip, growth).scaled(radius)
 
     def draw(gmsh: ModuleType) -> int:
-        return int(gmsh.model.occ.addDisk(0, 0, 0, radius, radius))
+        return int(gmsh.model.occ.addDisk(0, 0, 0, 1, 1))
 
     def names(middle: NDArray[np.float64]) -> dict[str, NDArray[np.bool_]]:
         return {"circle": np.ones(len(middle), dtype=bool)}
 
     ends = [p for crack in cracks for p in crack]
-    if any(np.hypot(*p) > radius * (1 + 1e-12) for p in ends):
+    if any(np.hypot(*p) > 1 + 1e-12 for p in ends):
         raise ValueError("a crack ends outside the disc")
-    inner = [p for p in ends if np.hypot(*p) < radius * (1 - 1e-9)]
+    inner = [p for p in ends if np.hypot(*p) < 1 - 1e-9]
     refine = [(p, float(tip_size)) for p in inner] if tip_size else []
     return _triangulate(draw, names, ("circle",), size, cracks, refine, growth)
 
@@ -348,6 +362,18 @@ def rectangle(
     """
     if width <= 0 or height <= 0:
         raise ValueError("the rectangle's sides must be positive")
+    scale = max(width, height)
+    if scale != 1:
+        return rectangle(
+            width / scale,
+            height / scale,
+            size / scale,
+            [(x / scale, y / scale, r / scale) for x, y, r in holes],
+            _shrunk(cracks, scale),
+            tip_size and tip_size / scale,
+            hole_size and hole_size / scale,
+            growth,
+        ).scaled(scale)
     half = np.array([width, height]) / 2
     for x, y, r in holes:
         if r <= 0 or abs(x) + r >= half[0] or abs(y) + r >= half[1]:
@@ -366,7 +392,7 @@ def rectangle(
 
     def names(middle: NDArray[np.float64]) -> dict[str, NDArray[np.bool_]]:
         x, y = middle.T
-        near = 1e-9 * max(width, height)
+        near = 1e-9
         found = {
             "left": np.abs(x + half[0]) < near,
             "right": np.abs(x - half[0]) < near,

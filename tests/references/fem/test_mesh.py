@@ -104,10 +104,16 @@ def test_a_missing_system_library_is_named(monkeypatch: pytest.MonkeyPatch) -> N
 
     monkeypatch.setattr(builtins, "__import__", broken)
     monkeypatch.setattr("ctypes.util.find_library", lambda name: None if name == "GLU" else "yes")
-    with pytest.raises(
-        MeshingUnavailableError, match=r"libGLU\.so\.1.*apt-get install libglu1-mesa"
-    ):
+    with pytest.raises(MeshingUnavailableError, match=r"libGLU\.so\.1.*install libglu1-mesa"):
         disc(0.5)
+
+
+def test_a_mesh_does_not_depend_on_the_unit_of_length() -> None:
+    hole = [(0.4, 0.1, 0.2)]
+    metres = rectangle(2, 1, 0.2, hole, [((-1, 0), (-0.5, 0))], 0.02)
+    small = rectangle(2e-3, 1e-3, 2e-4, [(4e-4, 1e-4, 2e-4)], [((-1e-3, 0), (-5e-4, 0))], 2e-5)
+    assert np.allclose(small.points, 1e-3 * metres.points, atol=1e-15)
+    assert np.allclose(disc(2.0, 10.0).points, 10 * disc(0.2).points)
 
 
 def test_bad_shapes_are_refused() -> None:

@@ -1,0 +1,181 @@
+"""In-plane natural frequencies of a homogeneous rectangle by quadratic finite elements."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import skfem
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import csr_matrix
+from scipy.sparse.linalg import LinearOperator, eigsh
+
+from references.fem.elasticity import check_voigt, component_dofs, elastic_forms
+from references.fem.evaluation import check_order
+from references.fem.linear import factorise
+from references.fem.mesh import Mesh, rectangle
+
+RIGID_MOTIONS = 3
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Frequencies with their shapes.
+
+    Attributes
+    ----------
+    frequencies : (count,) float array
+        Circular, rad/s, ascending; rigid motions left out.
+    nodes : (n, 2) float array
+    shapes : (count, n, 2) float array
+        Mass-normalised.
+    unknowns : int
+    """
+
+    frequencies: NDArray[np.float64]
+    nodes: NDArray[np.float64]
+    shapes: NDArray[np.float64]
+    unknowns: int
+
+
+def smallest_eigenpairs(
+    stiffness: csr_matrix, mass: csr_matrix, count: int, shift: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The lowest eigenvalues of K x = λ M x and vectors, by shift and invert.
+
+    Parameters
+    ----------
+    stiffness, mass : sparse (n, n)
+        Symmetric, K ≥ 0, M > 0.
+    count : int
+    shift : float
+        Negative, so that K − shift M is positive definite even with rigid motions.
+
+    Notes
+    -----
+    Lanczos starts from a fixed vector: the same call gives the same digits.
+    """
+    factors = factorise(stiffness - shift * mass)
+    inverse = LinearOperator(stiffness.shape, matvec=factors.solve, dtype=float)
+    start = np.random.default_rng(0).standard_normal(stiffness.shape[0])
+    values, vectors = eigsh(
+        stiffness, count, M=mass, sigma=shift, OPinv=inverse, v0=start, tol=1e-13
+    )
+    ascending = np.argsort(values)
+    return values[ascending], vectors[:, ascending]
+
+
+def in_plane_modes(
+    mesh: Mesh,
+    voigt: ArrayLike,
+    density: float,
+    count: int,
+    clamped: tuple[str, ...] = (),
+    order: int = 2,
+) -> Modes:
+    """Lowest elastic modes of a plane body.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    voigt : (3, 3) array_like
+        Pa; order 11, 22, 12.
+    density : float
+        kg/m³ (per unit depth).
+    count : int
+        Number of elastic modes; the three rigid motions of a free body do not count.
+    clamped : tuple of str
+        Boundaries that do not move; none: free-free.
+    order : {1, 2}
+
+    Returns
+    -------
+    Modes
+
+    Raises
+    ------
+    ValueError
+        For bad material data, or more modes than unknowns.
+    """
+    check_order(order)
+    tensor = check_voigt(voigt)
+    if not np.isfinite(density) or density <= 0:
+        raise ValueError(f"the density must be positive, not {density}")
+    if count < 1:
+        raise ValueError("at least one mode must be asked for")
+    for name in clamped:
+        mesh.nodes(name)
+    basis, facets, stiffness = elastic_forms(mesh, tensor, order)
+
+    @skfem.BilinearForm
+    def inertia(u, v, w):  # type: ignore[no-untyped-def]
+        return density * (u[0] * v[0] + u[1] * v[1])
+
+    mass = inertia.assemble(basis)
+    free = np.ones(basis.N, dtype=bool)
+    for name in clamped:
+        free[basis.get_dofs(facets[name]).flatten()] = False
+    rigid = 0 if clamped else RIGID_MOTIONS
+    if count + rigid >= free.sum() - 1:
+        raise ValueError(f"{count} modes are too many for {free.sum()} unknowns: use a finer mesh")
+    k, m = stiffness[free][:, free], mass[free][:, free]
+    # a shift of the size of the first eigenvalue: rigid motions stay well separated from it
+    extent = np.ptp(mesh.points, axis=0).max()
+    shift = -float(np.linalg.eigvalsh(tensor)[0] / (density * extent**2))
+    values, vectors = smallest_eigenpairs(k, m, count + rigid, shift)
+    if rigid and abs(values[rigid - 1]) > 1e-6 * values[rigid]:
+        raise FloatingPointError("a free body has three rigid motions; the eigensolver lost one")
+    dofs = component_dofs(basis)
+    full = np.zeros((basis.N, count))
+    full[free] = vectors[:, rigid:]
+    return Modes(
+        frequencies=np.sqrt(values[rigid:]),
+        nodes=basis.doflocs[:, dofs[:, 0]].T,
+        shapes=np.moveaxis(full[dofs], -1, 0),
+        unknowns=int(free.sum()),
+    )
+
+
+def in_plane_frequencies(
+    voigt: ArrayLike,
+    width: float,
+    height: float,
+    density: float,
+    count: int,
+    free: bool = True,
+    elements: int = 24,
+    order: int = 2,
+) -> NDArray[np.float64]:
+    """Circular natural frequencies of a rectangle, rad/s.
+
+    Parameters
+    ----------
+    voigt : (3, 3) array_like
+        Pa; order 11, 22, 12 with engineering shear.
+    width, height : float
+        m.
+    density : float
+        kg/m³.
+    count : int
+        Elastic modes wanted (rigid motions of a free body are left out).
+    free : bool
+        All edges free, or all edges clamped.
+    elements : int
+        Elements along the longer side.
+    order : {1, 2}
+
+    Returns
+    -------
+    (count,) float array, ascending
+
+    Examples
+    --------
+    A long bar's first axial mode, ω = π √(E/ρ) / L, comes among its bending modes:
+
+    >>> w = in_plane_frequencies(np.diag([1.0, 1.0, 0.5]), 1.0, 1.0, 1.0, 3, elements=8)
+    >>> w.shape
+    (3,)
+    """
+    if elements < 1:
+        raise ValueError("at least one element along the longer side")
+    mesh = rectangle(width, height, max(width, height) / elements)
+    clamped = () if free else mesh.outer
+    return in_plane_modes(mesh, voigt, density, count, clamped, order).frequencies
