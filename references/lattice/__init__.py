@@ -1,0 +1,1 @@
+"""Rigid blocks on elastic interfaces: exact reference for the tetrachiral solid."""

@@ -1,0 +1,113 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.linalg import eigh
+
+from references.fem.modes import in_plane_frequencies
+from references.lattice.blocks import (
+    BlockLattice,
+    TetrachiralCell,
+    cell_voigt,
+    paper_cell,
+    relative_motion,
+    spring_interface,
+)
+
+CELL = paper_cell()
+
+
+def homogenised(cell: TetrachiralCell, n: float, count: int, free: bool = True) -> np.ndarray:
+    side = n * cell.pitch
+    return in_plane_frequencies(cell_voigt(cell), side, side, cell.effective_density, count, free)
+
+
+@settings(max_examples=30, deadline=None, derandomize=True)
+@given(st.floats(0, 0.78), st.floats(-2, 2), st.floats(-2, 2), st.floats(-2, 2))
+def test_a_rigid_motion_strains_no_interface(angle: float, x: float, y: float, t: float) -> None:
+    start, end = np.array([0.3, -0.2]), np.array([x, y]) + 3
+    motion = np.r_[1 - t * start[1], 2 + t * start[0], t, 1 - t * end[1], 2 + t * end[0], t]
+    assert np.abs(relative_motion(start, end, angle) @ motion).max() < 1e-12
+
+
+@settings(max_examples=30, deadline=None, derandomize=True)
+@given(st.floats(0.01, 0.75), st.floats(-0.9, 0.5))
+def test_effective_tensor_against_the_closed_forms(angle: float, poisson: float) -> None:
+    """Eqs. 88–90 as printed; Eq. 87 with cos 2β... in its denominator (energy of the cell)."""
+    cell = TetrachiralCell(1.0, angle, 0.01, 3.0, poisson, 1.0)
+    kn, kt, _ = cell.springs
+    s, c = np.sin(angle) ** 2, np.cos(angle) ** 2
+    c1111 = ((kn - kt) ** 2 * np.cos(4 * angle) - (kn**2 + 14 * kn * kt + kt**2)) / (
+        8 * ((kn - kt) * np.cos(2 * angle) - (kn + kt))
+    )
+    c1122 = -((kn - kt) ** 2) * c * s / (2 * (kt * c + kn * s))
+    c1112 = (kn - kt) * np.sin(2 * angle) / 4
+    exact = [[c1111, c1122, c1112], [c1122, c1111, -c1112], [c1112, -c1112, (kn * s + kt * c) / 2]]
+    assert np.allclose(cell_voigt(cell), exact, rtol=1e-9, atol=1e-9 * kn)
+
+
+def test_free_frequencies_of_the_papers_lattice() -> None:
+    lattice = BlockLattice(CELL, 25, 25)
+    found = lattice.frequencies(6)
+    # an earlier, separate implementation of the same lattice, printed to five digits
+    assert np.allclose(found, [5215.4, 6585.6, 6585.6, 8887.4, 8966.5, 10839.6], rtol=1e-5)
+    stiffness = lattice.assemble(spring_interface(CELL)).toarray()
+    dense = eigh(stiffness, lattice.mass().toarray(), eigvals_only=True, subset_by_index=[0, 8])
+    assert np.allclose(found, np.sqrt(dense[3:]), rtol=1e-8)
+    assert np.abs(stiffness - stiffness.T).max() < 1e-6 * np.abs(stiffness).max()
+
+
+def test_homogenised_elements_agree_within_half_a_per_cent() -> None:
+    exact = BlockLattice(CELL, 25, 25).frequencies(6)
+    assert np.abs(homogenised(CELL, 25, 6) / exact - 1).max() < 5e-3
+
+
+def test_homogenisation_error_falls_with_the_square_of_the_cells() -> None:
+    errors = []
+    for n in (10, 20, 40):
+        exact = BlockLattice(CELL, n, n).frequencies(6)
+        errors.append(np.abs(homogenised(CELL, n, 6) / exact - 1).max())
+    assert errors[0] / errors[1] > 2.8
+    assert errors[1] / errors[2] > 2.8
+
+
+def test_clamped_trend_in_the_number_of_cells() -> None:
+    """The outer ring held: the clamped edge of the continuum lies near (n − 1) ℓ, to O(1/n)."""
+    errors = []
+    for n in (13, 25, 49):
+        lattice = BlockLattice(CELL, n, n)
+        exact = lattice.frequencies(6, lattice.ring)
+        errors.append(np.abs(homogenised(CELL, n - 1, 6, free=False) / exact - 1).max())
+    assert errors[1] < 1.5e-2
+    ratios = np.array(errors[:-1]) / errors[1:]
+    assert (ratios > 1.7).all(), errors
+    assert (ratios < 2.3).all(), errors
+
+
+def test_two_blocks_by_hand() -> None:
+    """β = 0: opening ω² = 2 K_n / m; turning against each other ω² = 2 K_φ / J."""
+    cell = TetrachiralCell(0.5, 0.0, 0.01, 2.0, 0.2, 3.0)
+    kn, _, kr = cell.springs
+    m = 3.0 * 0.25
+    found = BlockLattice(cell, 2, 1).frequencies(3)
+    for exact in (np.sqrt(2 * kn / m), np.sqrt(2 * kr / (m * 0.25 / 6))):
+        assert np.abs(found / exact - 1).min() < 1e-12
+
+
+def test_one_per_cent_in_a_spring_is_seen() -> None:
+    lattice = BlockLattice(CELL, 6, 6)
+    found = lattice.frequencies(3, interface=1.01 * spring_interface(CELL))
+    assert np.allclose(found / lattice.frequencies(3), np.sqrt(1.01), rtol=1e-9)
+
+
+def test_bad_input_is_refused() -> None:
+    with pytest.raises(ValueError, match="no longer touch"):
+        TetrachiralCell(1, 0.9, 0.01, 1, 0.3, 1)
+    with pytest.raises(ValueError, match="positive"):
+        TetrachiralCell(1, 0.3, 0.0, 1, 0.3, 1)
+    with pytest.raises(ValueError, match="Poisson"):
+        TetrachiralCell(1, 0.3, 0.01, 1, 0.6, 1)
+    with pytest.raises(ValueError, match="two blocks"):
+        BlockLattice(CELL, 1, 1)
+    with pytest.raises(ValueError, match="elastic modes"):
+        BlockLattice(CELL, 2, 1).frequencies(4)
