@@ -1,0 +1,1 @@
+"""A second finite-element code, FEniCSx, in a process of its own."""

@@ -1,0 +1,302 @@
+"""Finds FEniCSx and hands it problems; the answers come back in scikit-fem's numbering."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import skfem
+from numpy.typing import ArrayLike, NDArray
+
+from references.fem.conduction import Scalar, check_conductivity, evaluate
+from references.fem.elasticity import Vector, check_voigt, evaluate_vector
+from references.fem.evaluation import ELEMENTS, check_order, dirichlet_points, to_skfem
+from references.fem.mesh import Mesh
+
+VARIABLE = "CMVERIFY_FENICSX_PYTHON"
+INSTALL = (
+    "FEniCSx not found. Python >= 3.12: pip install 'cmverify[fenicsx]'; Debian: apt-get install"
+    " python3-dolfinx python3-slepc4py-real; elsewhere point CMVERIFY_FENICSX_PYTHON at an"
+    " interpreter that can import dolfinx"
+)
+_WORKER = Path(__file__).with_name("worker.py")
+# what would make a foreign interpreter load our packages or libraries
+_FOREIGN = ("PYTHONPATH", "PYTHONHOME", "VIRTUAL_ENV", "LD_LIBRARY_PATH", "PYTHONSAFEPATH")
+
+
+class FenicsxError(RuntimeError):
+    """The worker failed; the message carries its last words."""
+
+
+@dataclass(frozen=True)
+class Fenicsx:
+    """An interpreter that has FEniCSx.
+
+    Attributes
+    ----------
+    python : str
+    found_by : str
+        The environment variable, "this interpreter" or "the system's interpreter".
+    versions : dict
+        Of dolfinx, petsc and slepc4py.
+    """
+
+    python: str
+    found_by: str
+    versions: Mapping[str, str]
+
+    def __str__(self) -> str:
+        packages = ", ".join(f"{name} {version}" for name, version in self.versions.items())
+        return f"{packages} in {self.python} ({self.found_by})"
+
+
+def _environment() -> dict[str, str]:
+    clean = {k: v for k, v in os.environ.items() if k not in _FOREIGN}
+    # MPI refuses root and more ranks than cores unless told; both are usual in containers
+    clean.update(
+        OMP_NUM_THREADS="1",
+        OMPI_ALLOW_RUN_AS_ROOT="1",
+        OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+        OMPI_MCA_rmaps_base_oversubscribe="1",
+        OMPI_MCA_btl_vader_single_copy_mechanism="none",
+    )
+    return clean
+
+
+@cache
+def _describe(python: str) -> dict[str, str] | str:
+    """Versions that an interpreter reports, or why it has none."""
+    try:
+        done = subprocess.run(
+            [python, str(_WORKER), "--describe"],
+            env=_environment(),
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return str(error)
+    if done.returncode:
+        return (done.stderr.strip().splitlines() or ["it failed"])[-1]
+    versions: dict[str, str] = json.loads(done.stdout.strip().splitlines()[-1])
+    return versions
+
+
+def find() -> Fenicsx | None:
+    """The first interpreter that has FEniCSx, or None.
+
+    Looked for in ``CMVERIFY_FENICSX_PYTHON``, this interpreter, ``/usr/bin/python3``.
+
+    Raises
+    ------
+    FenicsxError
+        If the variable is set but its interpreter cannot import FEniCSx: a wrong setting must not
+        pass silently for another installation.
+    """
+    chosen = os.environ.get(VARIABLE)
+    if chosen:
+        versions = _describe(chosen)
+        if isinstance(versions, str):
+            raise FenicsxError(f"{VARIABLE}={chosen} has no usable FEniCSx: {versions}")
+        return Fenicsx(chosen, VARIABLE, versions)
+    for python, by in (
+        (sys.executable, "this interpreter"),
+        ("/usr/bin/python3", "the system's interpreter"),
+    ):
+        versions = _describe(python)
+        if not isinstance(versions, str):
+            return Fenicsx(python, by, versions)
+    return None
+
+
+def _launcher(python: str, processes: int) -> list[str]:
+    if processes == 1:
+        return []
+    beside = Path(python).with_name("mpirun")
+    program = str(beside) if beside.exists() else shutil.which("mpirun")
+    if program is None:
+        raise FenicsxError("mpirun is not installed: only one process can be used")
+    return [program, "-n", str(processes)]
+
+
+def run(
+    problem: Mapping[str, ArrayLike], processes: int = 1, timeout: float = 600.0
+) -> dict[str, NDArray[np.float64]]:
+    """Hand a problem (see ``worker.py``) to FEniCSx and return its answer.
+
+    Raises
+    ------
+    FenicsxError
+        If FEniCSx is missing, fails, or takes longer than ``timeout`` seconds.
+    """
+    if processes < 1:
+        raise ValueError("at least one process")
+    fenicsx = find()
+    if fenicsx is None:
+        raise FenicsxError(INSTALL)
+    with tempfile.TemporaryDirectory(prefix="cmverify-") as folder:
+        given, answer = Path(folder, "problem.npz"), Path(folder, "answer.npz")
+        np.savez(given, **{k: np.asarray(v) for k, v in problem.items()})  # type: ignore[arg-type]
+        command = [fenicsx.python, str(_WORKER), str(given), str(answer)]
+        try:
+            done = subprocess.run(
+                _launcher(fenicsx.python, processes) + command,
+                env=_environment(),
+                cwd=folder,
+                capture_output=True,
+                text=True,
+                timeout=timeout,
+                check=False,
+            )
+        except subprocess.TimeoutExpired as error:
+            raise FenicsxError(f"FEniCSx took longer than {timeout:g} s") from error
+        if done.returncode or not answer.exists():
+            words = "\n".join((done.stderr or done.stdout).strip().splitlines()[-12:])
+            raise FenicsxError(f"FEniCSx ({fenicsx}) failed:\n{words}")
+        with np.load(answer) as archive:
+            found = {name: archive[name] for name in archive.files}
+    if int(found["ranks"]) != processes:
+        raise FenicsxError(
+            f"{processes} ranks were started but {int(found['ranks'])} took part: mpirun belongs"
+            " to another MPI than FEniCSx"
+        )
+    return found
+
+
+@dataclass(frozen=True)
+class _Numbering:
+    """Nodes as scikit-fem numbers them, so that answers compare node by node."""
+
+    nodes: NDArray[np.float64]
+    on: Mapping[str, NDArray[np.int64]]
+    problem: dict[str, ArrayLike]
+
+
+def _number(mesh: Mesh, order: int) -> _Numbering:
+    check_order(order)
+    triangulation, facets = to_skfem(mesh)
+    basis = skfem.Basis(triangulation, ELEMENTS[order]())
+    nodes = basis.doflocs.T
+    problem: dict[str, ArrayLike] = {
+        "points": mesh.points,
+        "triangles": triangulation.t.T,
+        "nodes": nodes,
+        "element_nodes": basis.element_dofs.T,
+        "order": order,
+        "tractions": 0,
+    }
+    on = {name: basis.get_dofs(found).flatten() for name, found in facets.items()}
+    return _Numbering(nodes, on, problem)
+
+
+def steady_conduction(
+    mesh: Mesh,
+    conductivity: ArrayLike,
+    boundary_temperature: Scalar | Mapping[str, Scalar],
+    source: Scalar = 0.0,
+    order: int = 2,
+    processes: int = 1,
+) -> NDArray[np.float64]:
+    """As :func:`references.fem.conduction.steady_conduction`; nodal temperatures (n,).
+
+    The source is interpolated at the nodes: exact for polynomials up to the elements' order.
+    """
+    numbering = _number(mesh, order)
+    x, y = dirichlet_points(mesh, numbering.nodes).T
+    prescribed = np.full((len(x), 1), np.nan)
+    if isinstance(boundary_temperature, Mapping):
+        given: dict[str, Scalar] = dict(boundary_temperature)
+    else:
+        given = dict.fromkeys(mesh.outer, boundary_temperature)
+    for name, temperature in given.items():
+        mesh.nodes(name)
+        held = numbering.on[name]
+        prescribed[held, 0] = evaluate(temperature, x[held], y[held])
+    problem = {
+        **numbering.problem,
+        "physics": "conduction",
+        "tensor": check_conductivity(conductivity),
+        "prescribed": prescribed,
+        "source": evaluate(source, x, y),
+    }
+    return run(problem, processes)["values"][:, 0]
+
+
+def solve_elasticity(
+    mesh: Mesh,
+    voigt: ArrayLike,
+    displacement: Vector | Mapping[str, Vector],
+    tractions: Mapping[str, Vector] | None = None,
+    body_force: Vector | None = None,
+    order: int = 2,
+    processes: int = 1,
+) -> NDArray[np.float64]:
+    """As :func:`references.fem.elasticity.solve_elasticity`; nodal displacements (n, 2).
+
+    Forces and tractions are interpolated at the nodes: exact for polynomials up to the elements'
+    order.
+    """
+    numbering = _number(mesh, order)
+    x, y = dirichlet_points(mesh, numbering.nodes).T
+    prescribed = np.full((len(x), 2), np.nan)
+    if isinstance(displacement, Mapping):
+        given: dict[str, Vector] = dict(displacement)
+    else:
+        given = dict.fromkeys(mesh.outer, displacement)
+    for name, wanted in given.items():
+        mesh.nodes(name)
+        held = numbering.on[name]
+        values = evaluate_vector(wanted, x[held], y[held])
+        prescribed[held] = np.where(np.isnan(values), prescribed[held], values)
+    problem = {
+        **numbering.problem,
+        "physics": "elasticity",
+        "tensor": check_voigt(voigt),
+        "prescribed": prescribed,
+        "tractions": len(tractions or {}),
+    }
+    if body_force is not None:
+        problem["source"] = evaluate_vector(body_force, x, y)
+    for k, (name, traction) in enumerate((tractions or {}).items()):
+        mesh.nodes(name)
+        problem[f"traction_edges_{k}"] = mesh.boundaries[name]
+        problem[f"traction_values_{k}"] = evaluate_vector(traction, x, y)
+    return run(problem, processes)["values"]
+
+
+def in_plane_frequencies(
+    mesh: Mesh,
+    voigt: ArrayLike,
+    density: float,
+    count: int,
+    clamped: tuple[str, ...] = (),
+    order: int = 2,
+    processes: int = 1,
+) -> NDArray[np.float64]:
+    """As :func:`references.fem.modes.in_plane_modes`; circular frequencies (count,), rad/s."""
+    numbering = _number(mesh, order)
+    prescribed = np.full((len(numbering.nodes), 2), np.nan)
+    for name in clamped:
+        mesh.nodes(name)
+        prescribed[numbering.on[name]] = 0.0
+    tensor = check_voigt(voigt)
+    rigid = 0 if clamped else 3
+    extent = np.ptp(mesh.points, axis=0).max()
+    problem = {
+        **numbering.problem,
+        "physics": "modes",
+        "tensor": tensor,
+        "prescribed": prescribed,
+        "density": float(density),
+        "count": count + rigid,
+        "shift": -float(np.linalg.eigvalsh(tensor)[0] / (density * extent**2)),
+    }
+    return np.sqrt(run(problem, processes)["eigenvalues"][rigid:])

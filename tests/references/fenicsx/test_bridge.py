@@ -1,0 +1,108 @@
+"""scikit-fem against FEniCSx: same mesh, same element, two codes."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from references.fem.conduction import steady_conduction
+from references.fem.elasticity import solve_elasticity
+from references.fem.mesh import crack_tip_disc, disc, rectangle
+from references.fem.modes import in_plane_modes
+from references.fenicsx import bridge
+
+C = np.array([[1, 1 / 5, 1 / 10], [1 / 5, 4 / 5, 1 / 6], [1 / 10, 1 / 6, 1 / 3]])
+D = np.array([[5.0, 2.0], [2.0, 1.0]])
+
+
+@pytest.fixture(scope="module", autouse=True)
+def fenicsx() -> bridge.Fenicsx:
+    found = bridge.find()
+    if found is None:
+        pytest.skip(bridge.INSTALL)
+    return found
+
+
+def relative(found: NDArray, exact: NDArray) -> float:
+    return float(np.abs(found - exact).max() / np.abs(exact).max())
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_conduction(order: int) -> None:
+    def boundary(x: NDArray, y: NDArray) -> NDArray:
+        return np.exp(x - 2 * y) * np.cos(y)
+
+    mesh = disc(0.15)
+    ours = steady_conduction(mesh, D, boundary, lambda x, y: 1 + 0.8 * y, order)
+    theirs = bridge.steady_conduction(mesh, D, boundary, lambda x, y: 1 + 0.8 * y, order)
+    assert relative(theirs, ours.values) < 1e-11
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_crack_tip_disc_with_its_doubled_nodes(order: int) -> None:
+    def boundary(x: NDArray, y: NDArray) -> NDArray:
+        # opens the slit: the two mouths move apart
+        half = np.arctan2(y, x) / 2
+        return np.stack([0.3 * np.cos(half), np.sin(half)], axis=-1)
+
+    mesh = crack_tip_disc(0.15, tip_size=0.01)
+    ours = solve_elasticity(mesh, C, boundary, order=order)
+    theirs = bridge.solve_elasticity(mesh, C, boundary, order=order)
+    assert relative(theirs, ours.values) < 1e-11
+
+
+def test_tractions_forces_and_free_components() -> None:
+    mesh = rectangle(2, 1, 0.2, holes=[(0.3, 0.1, 0.2)])
+    data = {
+        "displacement": {"left": (0.0, np.nan), "bottom": (np.nan, 0.1)},
+        "tractions": {"right": (1.0, 0.2), "hole0": lambda x, y: np.stack([y, -x], axis=-1)},
+        "body_force": lambda x, y: np.stack([x * y, 1 - x], axis=-1),
+    }
+    ours = solve_elasticity(mesh, C, **data)  # type: ignore[arg-type]
+    assert relative(bridge.solve_elasticity(mesh, C, **data), ours.values) < 1e-11  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("clamped", [(), ("left", "bottom")])
+def test_frequencies(clamped: tuple[str, ...]) -> None:
+    mesh = rectangle(1, 1, 0.15)
+    ours = in_plane_modes(mesh, C, 2.0, 6, clamped).frequencies
+    theirs = bridge.in_plane_frequencies(mesh, C, 2.0, 6, clamped)
+    assert np.abs(theirs**2 / ours**2 - 1).max() < 1e-10
+
+
+def test_two_ranks() -> None:
+    mesh = crack_tip_disc(0.15)
+
+    def boundary(x: NDArray, y: NDArray) -> NDArray:
+        half = np.arctan2(y, x) / 2
+        return np.stack([0.3 * np.cos(half), np.sin(half)], axis=-1)
+
+    force = (0.2, -0.1)
+    ours = solve_elasticity(mesh, C, boundary, body_force=force)
+    theirs = bridge.solve_elasticity(mesh, C, boundary, body_force=force, processes=2)
+    assert relative(theirs, ours.values) < 1e-11
+    modes = in_plane_modes(mesh, C, 1.0, 4).frequencies
+    assert np.allclose(bridge.in_plane_frequencies(mesh, C, 1.0, 4, processes=2), modes, rtol=1e-10)
+
+
+def test_one_per_cent_is_seen() -> None:
+    mesh = disc(0.3)
+    ours = steady_conduction(mesh, D, lambda x, y: x * x)
+    off = bridge.steady_conduction(mesh, D * [[1.01, 1], [1, 1]], lambda x, y: x * x)
+    assert relative(off, ours.values) > 1e-5
+
+
+def test_a_worker_that_fails_says_why() -> None:
+    mesh = disc(0.5)
+    problem = {
+        "points": mesh.points,
+        "triangles": mesh.triangles,
+        "nodes": mesh.points + 0.1,
+        "element_nodes": mesh.triangles,
+        "order": 1,
+        "physics": "conduction",
+        "tensor": D,
+        "prescribed": np.zeros((len(mesh.points), 1)),
+        "tractions": 0,
+    }
+    with pytest.raises(bridge.FenicsxError, match="do not coincide"):
+        bridge.run(problem)
