@@ -1,1 +1,49 @@
-"""Fields of continuum-molecular (micropolar bond-based peridynamic) scenes."""
+"""Fields of continuum-molecular (micropolar bond-based peridynamic) scenes.
+
+Scene -> Lattice + Family -> Moduli + Bonds -> Operator -> statics -> Solution -> recovery
+"""
+
+from . import recovery
+from .conditions import Load, Support
+from .errors import (
+    CalibrationError,
+    ConvergenceError,
+    InadmissibleMaterialError,
+    NegativeCurvatureError,
+    SceneError,
+)
+from .family import Family
+from .influence import Influence
+from .laws import Cosine, Fourfold, TwoHarmonic, UniformShear
+from .regions import Crack, Region, disc, polygon, rectangle
+from .scene import Discretisation, Scene
+from .solution import Solution, Statistics
+from .tensors import ConductivityTensor, ElasticTensor
+
+__all__ = [
+    "CalibrationError",
+    "ConductivityTensor",
+    "ConvergenceError",
+    "Cosine",
+    "Crack",
+    "Discretisation",
+    "ElasticTensor",
+    "Family",
+    "Fourfold",
+    "InadmissibleMaterialError",
+    "Influence",
+    "Load",
+    "NegativeCurvatureError",
+    "Region",
+    "Scene",
+    "SceneError",
+    "Solution",
+    "Statistics",
+    "Support",
+    "TwoHarmonic",
+    "UniformShear",
+    "disc",
+    "polygon",
+    "recovery",
+    "rectangle",
+]

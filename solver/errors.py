@@ -1,0 +1,21 @@
+"""Errors that name the physics: each says what is wrong with the model, not with an array."""
+
+
+class SceneError(ValueError):
+    """What a scene asks for cannot be: an empty region, a rigid mode left free, a wrong key."""
+
+
+class CalibrationError(ValueError):
+    """No micromoduli of the wanted kind reproduce the given tensor on the given family."""
+
+
+class InadmissibleMaterialError(ValueError):
+    """The condensed symbol is negative at some wave vector: the solid is unstable in bulk."""
+
+
+class NegativeCurvatureError(RuntimeError):
+    """A solver met a direction of non-positive energy in an operator taken to be positive."""
+
+
+class ConvergenceError(RuntimeError):
+    """An iterative solver stopped before it reached the tolerance asked for."""

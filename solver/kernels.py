@@ -1,0 +1,174 @@
+"""Numba kernels: products of the bond operators with fields on the padded grid.
+
+Arrays and scalars in, arrays out; no logic about scenes. A body is handed over as *segments*,
+runs of neighbouring particles in one grid row that share a kind, as rows of an unsigned array
+
+    first cell | length | first packed row | kind | first column of `diagonal` | … of `factors`
+
+Kinds: 0 bulk (constant diagonal block, opposite bonds taken together), 1 truncated (own diagonal
+block, missing neighbours read as zeros), 2 special (own factors too). Each segment is written by
+one thread in a fixed order, so results do not depend on the number of threads. Indices are
+unsigned because a signed index may mean "from the end", a test that keeps loops scalar.
+
+Per half offset o with n, t, w = α Λ Δv, lengths in units of the operator's rotation length:
+F_p = Σ A (u_p − u_q) + t̂ (θ_p + θ_q), M_p = Σ −t̂·(u_q − u_p) + c (θ_p + θ_q), with
+A = (w/|ξ|)(k_n nnᵀ + k_t ttᵀ), t̂ = (w/2) k_t t, c = (w/4)|ξ| k_t (PHYSICS of Eqs. 19–20).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba as nb
+import numpy as np
+
+# OpenMP has the cheapest fork and join of Numba's layers; the others are fallbacks.
+nb.config.THREADING_LAYER_PRIORITY = [  # type: ignore[attr-defined]"omp", "tbb", "workqueue"]
+
+_U = np.uint64
+# Contraction to fused multiply-adds only: sums keep their order.
+_FAST = {"contract", "nsz"}
+_OPTIONS: Any = {"parallel": True, "cache": True, "fastmath": _FAST, "nogil": True}
+
+
+@nb.njit(**_OPTIONS)
+def elastic_product(grid, segments, steps, blocks, bulk, diagonal, factors, out):
+    """Operator rows with three unknowns.
+
+    Parameters
+    ----------
+    grid : float64 (3, cells)
+        u1, u2 and scaled rotation on the padded grid.
+    segments : uint64 (s, 6)
+    steps : uint64 (h,)
+        Distance of each half offset in cells of the flattened grid.
+    blocks : float64 (h, 6)
+        A11, A12, A22, t̂1, t̂2, c of each half offset.
+    bulk : float64 (6,)
+        Diagonal block of a bulk particle: 11, 12, 22, 1θ, 2θ, θθ.
+    diagonal : float64 (6, d)
+    factors : float64 (2h, f)
+    out : float64 (3, n)
+    """
+    ux, uy, th = grid[0], grid[1], grid[2]
+    half = steps.size
+    for s in nb.prange(segments.shape[0]):
+        cell, size, first = segments[s, 0], segments[s, 1], segments[s, 2]
+        kind, column, fcol = segments[s, 3], segments[s, 4], segments[s, 5]
+        fx, fy, mo = out[0], out[1], out[2]
+        if kind == _U(0):
+            for j in range(size):
+                x, y, r = ux[cell + j], uy[cell + j], th[cell + j]
+                fx[first + j] = bulk[0] * x + bulk[1] * y
+                fy[first + j] = bulk[1] * x + bulk[2] * y
+                mo[first + j] = bulk[5] * r
+        else:
+            for j in range(size):
+                x, y, r = ux[cell + j], uy[cell + j], th[cell + j]
+                k = column + j
+                fx[first + j] = diagonal[0, k] * x + diagonal[1, k] * y + diagonal[3, k] * r
+                fy[first + j] = diagonal[1, k] * x + diagonal[2, k] * y + diagonal[4, k] * r
+                mo[first + j] = diagonal[3, k] * x + diagonal[4, k] * y + diagonal[5, k] * r
+        if kind != _U(2):
+            for o in range(half):
+                a, b, c = blocks[o, 0], blocks[o, 1], blocks[o, 2]
+                tx, ty, e = blocks[o, 3], blocks[o, 4], blocks[o, 5]
+                ahead, behind = cell + steps[o], cell - steps[o]
+                for j in range(size):
+                    x1, x2 = ux[ahead + j], ux[behind + j]
+                    y1, y2 = uy[ahead + j], uy[behind + j]
+                    r1, r2 = th[ahead + j], th[behind + j]
+                    sx, sy, dr = x1 + x2, y1 + y2, r1 - r2
+                    fx[first + j] += tx * dr - a * sx - b * sy
+                    fy[first + j] += ty * dr - b * sx - c * sy
+                    mo[first + j] += e * (r1 + r2) - tx * (x1 - x2) - ty * (y1 - y2)
+        else:
+            for o in range(half):
+                a, b, c = blocks[o, 0], blocks[o, 1], blocks[o, 2]
+                tx, ty, e = blocks[o, 3], blocks[o, 4], blocks[o, 5]
+                ahead, behind = cell + steps[o], cell - steps[o]
+                f_ahead, f_behind = factors[o], factors[o + half]
+                for j in range(size):
+                    g1, g2 = f_ahead[fcol + j], f_behind[fcol + j]
+                    x1, x2 = g1 * ux[ahead + j], g2 * ux[behind + j]
+                    y1, y2 = g1 * uy[ahead + j], g2 * uy[behind + j]
+                    r1, r2 = g1 * th[ahead + j], g2 * th[behind + j]
+                    sx, sy, dr = x1 + x2, y1 + y2, r1 - r2
+                    fx[first + j] += tx * dr - a * sx - b * sy
+                    fy[first + j] += ty * dr - b * sx - c * sy
+                    mo[first + j] += e * (r1 + r2) - tx * (x1 - x2) - ty * (y1 - y2)
+
+
+@nb.njit(**_OPTIONS)
+def central_product(grid, segments, steps, blocks, bulk, diagonal, factors, out):
+    """Operator rows of an elastic body in which no bond resists shear: two unknowns.
+
+    As `elastic_product` with `grid` (2, cells), `blocks` (h, 3), `bulk` (3,), `diagonal` (3, d)
+    and `out` (2, n).
+    """
+    ux, uy = grid[0], grid[1]
+    half = steps.size
+    for s in nb.prange(segments.shape[0]):
+        cell, size, first = segments[s, 0], segments[s, 1], segments[s, 2]
+        kind, column, fcol = segments[s, 3], segments[s, 4], segments[s, 5]
+        fx, fy = out[0], out[1]
+        for j in range(size):
+            x, y = ux[cell + j], uy[cell + j]
+            if kind == _U(0):
+                fx[first + j] = bulk[0] * x + bulk[1] * y
+                fy[first + j] = bulk[1] * x + bulk[2] * y
+            else:
+                k = column + j
+                fx[first + j] = diagonal[0, k] * x + diagonal[1, k] * y
+                fy[first + j] = diagonal[1, k] * x + diagonal[2, k] * y
+        for o in range(half):
+            a, b, c = blocks[o, 0], blocks[o, 1], blocks[o, 2]
+            ahead, behind = cell + steps[o], cell - steps[o]
+            if kind != _U(2):
+                for j in range(size):
+                    sx = ux[ahead + j] + ux[behind + j]
+                    sy = uy[ahead + j] + uy[behind + j]
+                    fx[first + j] -= a * sx + b * sy
+                    fy[first + j] -= b * sx + c * sy
+            else:
+                f_ahead, f_behind = factors[o], factors[o + half]
+                for j in range(size):
+                    g1, g2 = f_ahead[fcol + j], f_behind[fcol + j]
+                    sx = g1 * ux[ahead + j] + g2 * ux[behind + j]
+                    sy = g1 * uy[ahead + j] + g2 * uy[behind + j]
+                    fx[first + j] -= a * sx + b * sy
+                    fy[first + j] -= b * sx + c * sy
+
+
+@nb.njit(**_OPTIONS)
+def conductive_product(grid, segments, steps, blocks, bulk, diagonal, factors, out):
+    """Operator rows of conduction: one unknown.
+
+    As `elastic_product` with `grid` (1, cells), `blocks` (h, 1) holding w k/|ξ|², `bulk` (1,),
+    `diagonal` (1, d) and `out` (1, n).
+    """
+    field = grid[0]
+    half = steps.size
+    for s in nb.prange(segments.shape[0]):
+        cell, size, first = segments[s, 0], segments[s, 1], segments[s, 2]
+        kind, column, fcol = segments[s, 3], segments[s, 4], segments[s, 5]
+        flow = out[0]
+        if kind == _U(0):
+            for j in range(size):
+                flow[first + j] = bulk[0] * field[cell + j]
+        else:
+            for j in range(size):
+                flow[first + j] = diagonal[0, column + j] * field[cell + j]
+        for o in range(half):
+            a = blocks[o, 0]
+            ahead, behind = cell + steps[o], cell - steps[o]
+            if kind != _U(2):
+                for j in range(size):
+                    flow[first + j] -= a * (field[ahead + j] + field[behind + j])
+            else:
+                f_ahead, f_behind = factors[o], factors[o + half]
+                for j in range(size):
+                    flow[first + j] -= a * (
+                        f_ahead[fcol + j] * field[ahead + j]
+                        + f_behind[fcol + j] * field[behind + j]
+                    )

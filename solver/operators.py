@@ -1,0 +1,269 @@
+"""Matrix-free bond operators: the stiffness of a body as products with fields.
+
+The operator acts on the *active* particles (those with a free unknown), component by component:
+a vector is ``x.reshape(components, active)``. Rotations enter as θ Δx, so that all unknowns and
+all entries carry the same units and no tolerance depends on them. Rows are densities, force (or
+heat) per unit volume.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse.linalg import LinearOperator
+
+from . import kernels
+from .bonds import Bonds
+from .micromoduli import ConductiveModuli, Moduli
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+# Kinds of particles as the kernels know them.
+_BULK, _TRUNCATED, _SPECIAL = 0, 1, 2
+
+
+def offset_blocks(bonds: Bonds, moduli: Moduli) -> Array:
+    """Entries of the bond blocks of all offsets, shape (family size, 6, 3 or 1).
+
+    Elasticity: A11, A12, A22, t̂1, t̂2, c (rotation scaled by the spacing), the first three only
+    where no bond resists shear. Conduction: w k/|ξ|².
+    """
+    family = bonds.family
+    weight = family.weight * family.cell
+    if isinstance(moduli, ConductiveModuli):
+        return (weight * moduli.conductivity / family.length**2)[:, None]
+    n, t = family.normal, family.tangent
+    axial = weight * moduli.normal / family.length
+    transverse = weight * moduli.shear / family.length
+    block = [
+        axial * n[:, a] * n[:, b] + transverse * t[:, a] * t[:, b]
+        for a, b in ((0, 0), (0, 1), (1, 1))
+    ]
+    if not moduli.has_shear:
+        return np.column_stack(block)
+    cells = family.length / family.spacing
+    half = 0.5 * transverse * cells
+    return np.column_stack([*block, half * t[:, 0], half * t[:, 1], 0.5 * half * cells])
+
+
+class BondOperator(LinearOperator):
+    """Stiffness of the active particles of a body.
+
+    Parameters
+    ----------
+    bonds : Bonds
+    moduli : ElasticModuli or ConductiveModuli
+    fixed : ndarray of bool, shape (components, N)
+        Prescribed unknowns. Particles with all of them prescribed are not unknowns; single
+        prescribed components of the others are kept as identity rows.
+    """
+
+    def __init__(self, bonds: Bonds, moduli: Moduli, fixed: Mask) -> None:
+        self.bonds, self.moduli = bonds, moduli
+        self.blocks: Array = offset_blocks(bonds, moduli)
+        self.components = {6: 3, 3: 2, 1: 1}[self.blocks.shape[1]]
+        if fixed.shape != (self.components, bonds.lattice.count):
+            raise ValueError(f"fixed must have shape {(self.components, bonds.lattice.count)}")
+        #: Numbers of the active particles.
+        self.active: NDArray[np.int64] = np.nonzero(~fixed.all(axis=0))[0]
+        count = len(self.active)
+        super().__init__(np.float64, (self.components * count, self.components * count))
+        partly = fixed[:, self.active]
+        #: Identity rows, shape (components, active), or None if there are none.
+        self.fixed: Mask | None = partly if partly.any() else None
+        self._grid = np.zeros((self.components, int(np.prod(bonds.lattice.shape))))
+        self._kernel = {
+            3: kernels.elastic_product,
+            2: kernels.central_product,
+            1: kernels.conductive_product,
+        }[self.components]
+        half = bonds.family.size // 2
+        row = bonds.lattice.shape[1]
+        dx, dy = bonds.family.offsets[:half].T
+        self._steps = (dy * row + dx).astype(np.uint64)
+        self._half_blocks = np.ascontiguousarray(self.blocks[:half])
+        self._bulk = self._diagonal_sums(np.ones((bonds.family.size, 1)))[:, 0]
+        self._segments, self._diagonal = self._layout()
+
+    def _layout(self) -> tuple[NDArray[np.uint64], Array]:
+        """Segments of the active particles and the diagonal blocks that differ from the bulk's."""
+        bonds, lattice = self.bonds, self.bonds.lattice
+        kind = np.full(lattice.count, _BULK, dtype=np.int64)
+        kind[bonds.short] = _TRUNCATED
+        kind[bonds.special] = _SPECIAL
+        rows, columns = (axis[self.active] for axis in lattice.cells)
+        kind = kind[self.active]
+        own = kind != _BULK
+        diagonal = np.empty((len(self._bulk), int(own.sum())))
+        truncated = self.active[kind == _TRUNCATED]
+        diagonal[:, kind[own] == _TRUNCATED] = self._diagonal_sums(
+            bonds._exist(truncated).astype(np.float64)
+        )
+        special = bonds.column[self.active]
+        diagonal[:, kind[own] == _SPECIAL] = self._diagonal_sums(
+            bonds.factors[:, special[kind == _SPECIAL]]
+        )
+        own_column = np.cumsum(own) - 1
+        # A new segment starts where the row, the kind or the neighbourhood along a row breaks;
+        # columns of `factors` run on within a row because they follow the lattice's order.
+        step = np.ones(len(rows), dtype=bool)
+        step[1:] = (
+            (rows[1:] != rows[:-1]) | (columns[1:] != columns[:-1] + 1) | (kind[1:] != kind[:-1])
+        )
+        first = np.nonzero(step)[0]
+        size = np.diff(np.append(first, len(rows)))
+        segments = np.column_stack(
+            [
+                rows[first] * lattice.shape[1] + columns[first],
+                size,
+                first,
+                kind[first],
+                np.maximum(own_column[first], 0),
+                np.maximum(special[first], 0),
+            ]
+        )
+        return np.ascontiguousarray(segments, dtype=np.uint64), diagonal
+
+    def _diagonal_sums(self, factors: Array) -> Array:
+        """Diagonal blocks for bond factors of shape (family size, n): (entries, n).
+
+        Order 11, 22 … as the kernels read it: 11, 12, 22, 1θ, 2θ, θθ.
+        """
+        return np.einsum("oe,on->en", self.blocks, factors)
+
+    # ---- products -----------------------------------------------------------------------
+
+    def scatter(self, x: Array) -> Array:
+        """Write a vector of the active unknowns to the (reused) padded grid; others are zero."""
+        values = x.reshape(self.components, -1)
+        if self.fixed is not None:
+            values = np.where(self.fixed, 0.0, values)
+        self._grid.fill(0.0)
+        self._grid[:, self._cells] = values
+        return self._grid
+
+    @cached_property
+    def _cells(self) -> NDArray[np.int64]:
+        rows, columns = (axis[self.active] for axis in self.bonds.lattice.cells)
+        return rows * self.bonds.lattice.shape[1] + columns
+
+    def apply_grid(self, grid: Array) -> Array:
+        """Rows of the active particles for a field on the padded grid, (components, active)."""
+        out = np.empty((self.components, len(self.active)))
+        self._kernel(
+            grid,
+            self._segments,
+            self._steps,
+            self._half_blocks,
+            self._bulk,
+            self._diagonal,
+            self.bonds.factors,
+            out,
+        )
+        return out
+
+    def _matvec(self, x: Array) -> Array:
+        x = np.asarray(x, dtype=np.float64)
+        out = self.apply_grid(self.scatter(x))
+        if self.fixed is not None:
+            out[self.fixed] = self.identity_scale * x.reshape(out.shape)[self.fixed]
+        return out.ravel()
+
+    def _adjoint(self) -> BondOperator:
+        return self
+
+    def coupling(self, prescribed: Array) -> Array:
+        """K_fp u_p: rows of the active particles for prescribed values of shape (components, N)."""
+        grid = np.zeros_like(self._grid)
+        rows, columns = self.bonds.lattice.cells
+        grid[:, rows * self.bonds.lattice.shape[1] + columns] = prescribed
+        out = self.apply_grid(grid)
+        if self.fixed is not None:
+            out[self.fixed] = 0.0
+        return out
+
+    # ---- structure ----------------------------------------------------------------------
+
+    @property
+    def identity_scale(self) -> float:
+        """Diagonal entry of the identity rows: the size of the bulk's."""
+        return float(np.abs(self._bulk).max())
+
+    @cached_property
+    def block_diagonal(self) -> Array:
+        """Diagonal blocks, shape (active, components, components)."""
+        entries = np.tile(self._bulk[:, None], len(self.active))
+        own = np.nonzero(self._kinds != _BULK)[0]
+        entries[:, own] = self._diagonal
+        c = self.components
+        blocks = np.empty((len(self.active), c, c))
+        if c == 1:
+            blocks[:, 0, 0] = entries[0]
+        else:
+            for k, (a, b) in enumerate([(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)]):
+                if b < c:
+                    blocks[:, a, b] = blocks[:, b, a] = entries[k]
+        if self.fixed is not None:
+            where, component = np.nonzero(self.fixed.T)
+            blocks[where, component, :] = blocks[where, :, component] = 0.0
+            blocks[where, component, component] = self.identity_scale
+        return blocks
+
+    @cached_property
+    def _kinds(self) -> NDArray[np.int64]:
+        kinds, sizes = self._segments[:, [3, 1]].astype(np.int64).T
+        return np.repeat(kinds, sizes)
+
+    @property
+    def directed_bonds(self) -> int:
+        """Bonds that one product visits, each from both ends."""
+        return len(self.active) * self.bonds.family.size
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of what a product reads besides the fields."""
+        arrays = (self._segments, self._steps, self._half_blocks, self._bulk, self._diagonal)
+        return sum(a.nbytes for a in arrays) + self.bonds.nbytes
+
+    def to_csr(self) -> sparse.csr_array:
+        """The same operator as a sparse matrix, for small checks and factorisations."""
+        bonds, lattice, c = self.bonds, self.bonds.lattice, self.components
+        count = len(self.active)
+        number = np.full(lattice.shape, -1, dtype=np.int64)
+        rows, columns = (axis[self.active] for axis in lattice.cells)
+        number[rows, columns] = np.arange(count)
+        values: list[Array] = []
+        ends: list[NDArray[np.int32]] = []
+        starts: list[NDArray[np.int32]] = []
+        layout = {1: [[0]], 2: [[0, 1], [1, 2]], 3: [[0, 1, 3], [1, 2, 4], [3, 4, 5]]}[c]
+        for o, (dx, dy) in enumerate(bonds.family.offsets):
+            neighbour = number[rows + dy, columns + dx]
+            here = np.nonzero(neighbour >= 0)[0]
+            factor = bonds.factor(o)[self.active[here]]
+            for a in range(c):
+                for b in range(c):
+                    # K_pq = [[−A, t̂], [−t̂ᵀ, c]]
+                    sign = 1.0 if b == 2 else -1.0
+                    values.append(sign * factor * self.blocks[o, layout[a][b]])
+                    starts.append((a * count + here).astype(np.int32))
+                    ends.append((b * count + neighbour[here]).astype(np.int32))
+        diagonal = self.block_diagonal
+        for a in range(c):
+            for b in range(c):
+                values.append(diagonal[:, a, b])
+                starts.append((a * count + np.arange(count)).astype(np.int32))
+                ends.append((b * count + np.arange(count)).astype(np.int32))
+        matrix = sparse.coo_array(
+            (np.concatenate(values), (np.concatenate(starts), np.concatenate(ends))),
+            shape=self.shape,
+        ).tocsr()
+        if self.fixed is not None:
+            free = sparse.diags_array((~self.fixed).ravel().astype(np.float64))
+            identity = sparse.diags_array(self.fixed.ravel() * self.identity_scale)
+            matrix = (free @ matrix @ free + identity).tocsr()
+        matrix.eliminate_zeros()
+        return matrix

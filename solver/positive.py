@@ -1,0 +1,75 @@
+"""Non-negative moduli with exact moments, as close as can be to a smooth law.
+
+minimise |x − x₀|² subject to A x = d and x ≥ 0: strictly convex, a hundred unknowns, and wanted
+to machine precision, which general solvers do not give. SciPy's non-negative least squares says
+whether a solution exists and from which active set to start; the active set is then finished by
+exact steps on the optimality conditions.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import nnls
+
+Array = NDArray[np.float64]
+
+_FEASIBLE = 1e-9
+
+
+def feasible(moments: Array, target: Array) -> bool:
+    """Whether some x ≥ 0 has ``moments @ x == target`` (shapes (k, n), (k,))."""
+    scale = np.linalg.norm(target)
+    residual = nnls(moments, target, maxiter=50 * moments.shape[1])[1]
+    return bool(residual <= _FEASIBLE * scale)
+
+
+def closest(moments: Array, target: Array, wanted: Array) -> Array | None:
+    """Point of {x ≥ 0, moments x = target} nearest to `wanted`; None if that set is empty.
+
+    Parameters
+    ----------
+    moments : ndarray, shape (k, n)
+    target : ndarray, shape (k,)
+    wanted : ndarray, shape (n,)
+
+    Returns
+    -------
+    ndarray, shape (n,), or None
+        Satisfies the moments to rounding; entries that are not positive are exactly zero.
+    """
+    rows = np.linalg.norm(moments, axis=1)
+    keep = rows > 0
+    a, d = moments[keep] / rows[keep, None], target[keep] / rows[keep]
+    if not feasible(a, d):
+        return None
+    size = len(wanted)
+    stiff = 1e5
+    start = nnls(
+        np.vstack([stiff * a, np.eye(size)]), np.concatenate([stiff * d, wanted]), maxiter=50 * size
+    )[0]
+    free = start > 0
+    scale = max(np.abs(wanted).max(), start.max())
+    for _ in range(20 * size):
+        part = a[:, free]
+        multiplier = np.linalg.lstsq(part @ part.T, d - part @ wanted[free], rcond=1e-13)[0]
+        x = np.zeros(size)
+        x[free] = wanted[free] + part.T @ multiplier
+        if x.min() < -1e-14 * scale:
+            # The most negative first: dropping all at once may lose feasibility.
+            free[np.argmin(x)] = False
+            continue
+        # A zero entry wants in where the unconstrained optimum would make it positive.
+        gain = np.where(free, -np.inf, wanted + a.T @ multiplier)
+        if gain.max() > 1e-12 * scale:
+            free[np.argmax(gain)] = True
+            continue
+        break
+    x = np.maximum(x, 0.0)
+    # One correction on the support takes the moments to rounding.
+    support = x > 0
+    part = a[:, support]
+    x[support] += np.linalg.lstsq(part, d - part @ x[support], rcond=1e-13)[0]
+    if np.abs(a @ x - d).max() > 1e-10 * np.abs(d).max() or x.min() < 0:
+        return None
+    return x

@@ -1,0 +1,244 @@
+"""Scenes: what is asked. A scene derives which unknowns and terms exist, and nothing more.
+
+``Scene`` is a description; `Scene.discretise` turns it into arrays and operators (all input is
+checked there, before anything long begins), and the analyses work on that `Discretisation`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .bonds import Bonds
+from .conditions import Load, Support, evaluate
+from .errors import SceneError
+from .family import AreaRule, Family
+from .influence import CONSTANT, Influence, influence
+from .lattice import Lattice
+from .laws import AngularLaw
+from .micromoduli import Calibration, Moduli, calibrate
+from .operators import BondOperator
+from .regions import Crack, Region
+from .rigid import check_held
+from .stability import Stability, require_admissible
+from .surface import Surface, check_surface
+from .tensors import ElasticTensor, Material
+
+if TYPE_CHECKING:
+    from .solution import Solution
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A body, its material, what holds it and what acts on it.
+
+    Parameters
+    ----------
+    region : Region
+    spacing : float
+        Grid spacing Δx, m.
+    material : ElasticTensor or ConductivityTensor
+        Decides the physics.
+    supports : sequence of Support
+        Later ones win where they overlap.
+    loads : sequence of Load
+        They add up.
+    m : float
+        Horizon in cells.
+    calibration : {"continuum", "lattice", "positive"}
+    law : angular law, optional
+        See `solver.micromoduli.calibrate` for the default.
+    influence : str or Influence
+    area_rule : {"partial", "full", "exact"}
+    surface : {"volume", "none"}
+    cracks : sequence of Crack
+        Bonds that meet one are cut.
+
+    Raises
+    ------
+    SceneError
+        If the description contradicts itself.
+
+    Examples
+    --------
+    >>> from solver import ConductivityTensor, Scene, Support, disc
+    >>> scene = Scene(
+    ...     region=disc(1.0), spacing=0.1, material=ConductivityTensor.isotropic(1.0),
+    ...     supports=[Support.layer(cells=5.5, temperature=lambda x, y: x)],
+    ... )
+    >>> bool(abs(scene.solve().temperature - scene.solve().points[:, 0]).max() < 1e-9)
+    True
+    """
+
+    region: Region
+    spacing: float
+    material: Material
+    supports: Sequence[Support] = ()
+    loads: Sequence[Load] = ()
+    m: float = 5
+    calibration: Calibration = "lattice"
+    law: AngularLaw | None = None
+    influence: str | Influence = field(default=CONSTANT)
+    area_rule: AreaRule = "partial"
+    surface: Surface = "volume"
+    cracks: Sequence[Crack] = ()
+
+    def __post_init__(self) -> None:
+        check_surface(self.surface)
+        if not isinstance(self.region, Region):
+            raise SceneError(f"region must be a Region, not {type(self.region).__name__}")
+        wanted = {"force", "couple"} if self.elastic else {"source"}
+        for load in self.loads:
+            if load.kind not in wanted:
+                physics = "elastic" if self.elastic else "conductive"
+                raise SceneError(f"a {load.kind} does not act on an {physics} body")
+
+    @property
+    def elastic(self) -> bool:
+        """Whether the physics is elasticity (else conduction)."""
+        return isinstance(self.material, ElasticTensor)
+
+    def family(self) -> Family:
+        """The family of a bulk particle."""
+        return Family(self.m, self.spacing, self.area_rule, influence(self.influence))
+
+    def discretise(self) -> Discretisation:
+        """Check the scene and turn it into arrays and operators.
+
+        Raises
+        ------
+        SceneError, CalibrationError, InadmissibleMaterialError
+        """
+        return Discretisation.of(self)
+
+    def solve(self, tolerance: float = 1e-10, **options: Any) -> Solution:
+        """Static (or steady) solution; see `solver.statics.solve`."""
+        from .statics import solve
+
+        return solve(self.discretise(), tolerance=tolerance, **options)
+
+
+@dataclass(frozen=True, eq=False)
+class Discretisation:
+    """A scene as arrays: shared by all analyses.
+
+    Attributes
+    ----------
+    lattice, family, moduli, stability, bonds, operator
+        The parts, see their modules.
+    prescribed : ndarray of bool, shape (components, N)
+    values : ndarray, shape (components, N)
+        Prescribed values (rotations times the spacing), zero where free.
+    load : ndarray, shape (components, N)
+        Densities of force, couple over spacing, or source.
+    seconds : float
+        Wall time that building all this took.
+    """
+
+    scene: Scene
+    lattice: Lattice
+    family: Family
+    moduli: Moduli
+    stability: Stability
+    bonds: Bonds
+    operator: BondOperator
+    prescribed: Mask
+    values: Array
+    load: Array
+    seconds: float
+
+    @classmethod
+    def of(cls, scene: Scene) -> Discretisation:
+        """Build it, cheap checks first."""
+        begun = perf_counter()
+        family = scene.family()
+        moduli = calibrate(family, scene.material, scene.calibration, scene.law)
+        stability = require_admissible(family, moduli)
+        lattice = Lattice(scene.region, scene.spacing, family.reach)
+        components = 1
+        if scene.elastic:
+            components = 2 if stability.sign == "central" else 3
+        prescribed, values = _supports(scene, lattice, components)
+        load = _loads(scene, lattice, components)
+        bonds = Bonds(
+            lattice, family, scene.cracks, scene.surface, np.logical_and.reduce(prescribed, axis=0)
+        )
+        check_held(bonds, prescribed, scene.elastic)
+        operator = BondOperator(bonds, moduli, prescribed)
+        seconds = perf_counter() - begun
+        return cls(
+            scene,
+            lattice,
+            family,
+            moduli,
+            stability,
+            bonds,
+            operator,
+            prescribed,
+            values,
+            load,
+            seconds,
+        )
+
+    def right_hand_side(self) -> Array:
+        """Load of the active unknowns less what the prescribed ones exert, flattened."""
+        operator = self.operator
+        rhs = self.load[:, operator.active] - operator.coupling(self.values)
+        if operator.fixed is not None:
+            given = self.values[:, operator.active]
+            rhs[operator.fixed] = operator.identity_scale * given[operator.fixed]
+        return rhs.ravel()
+
+    def field(self, x: Array) -> Array:
+        """Values of all unknowns, shape (components, N), from a vector of the active ones."""
+        values = self.values.copy()
+        values[:, self.operator.active] = x.reshape(self.operator.components, -1)
+        values[self.prescribed] = self.values[self.prescribed]
+        return values
+
+
+def _supports(scene: Scene, lattice: Lattice, components: int) -> tuple[Mask, Array]:
+    prescribed = np.zeros((components, lattice.count), dtype=bool)
+    values = np.zeros((components, lattice.count))
+    for support in scene.supports:
+        columns = support.columns(scene.elastic)
+        selected = support.select(lattice)
+        if not selected.any():
+            raise SceneError("a support holds no particle: its layer or region is empty")
+        evaluated: dict[int, Array] = {}
+        for unknown, value, component, width in columns:
+            if unknown >= components:
+                # Without shear stiffness rotations are no unknowns; prescribing them is moot.
+                continue
+            key = id(value)
+            if key not in evaluated:
+                what = "a prescribed value"
+                evaluated[key] = evaluate(value, lattice.points[selected], width, what)
+            scale = scene.spacing if unknown == 2 else 1.0
+            prescribed[unknown, selected] = True
+            values[unknown, selected] = scale * evaluated[key][:, component]
+    return prescribed, values
+
+
+def _loads(scene: Scene, lattice: Lattice, components: int) -> Array:
+    load = np.zeros((components, lattice.count))
+    for item in scene.loads:
+        mask, density = item.density(lattice)
+        if item.kind == "couple":
+            if components < 3:
+                raise SceneError(
+                    "a body couple needs bonds with shear stiffness: this solid has none "
+                    "(C66 = C12), its particles do not resist rotation"
+                )
+            load[2, mask] += density[:, 0] / scene.spacing
+        else:
+            load[: density.shape[1], mask] += density.T
+    return load

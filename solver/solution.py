@@ -1,0 +1,111 @@
+"""What a solve returns: fields at the particles, and how they were obtained."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from .scene import Discretisation, Scene
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """How a solution was obtained.
+
+    Attributes
+    ----------
+    particles, unknowns, bonds : int
+        Particles of the body, free unknowns, directed bonds of the active particles.
+    method : str
+        Solver and preconditioner.
+    sign, margin : str, float
+        Of the operator, see `solver.stability.Stability`.
+    iterations : int
+    residual : float
+        |b − K x| / |b|, evaluated at the end with the operator itself.
+    setup_seconds, solve_seconds : float
+        Wall time of the discretisation and of the solver.
+    """
+
+    particles: int
+    unknowns: int
+    bonds: int
+    method: str
+    sign: str
+    margin: float
+    iterations: int
+    residual: float
+    setup_seconds: float
+    solve_seconds: float
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON."""
+        return asdict(self)
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Fields at the particles of a body.
+
+    Attributes
+    ----------
+    discretisation : Discretisation
+    unknowns : ndarray, shape (components, N)
+        u1, u2 and θ Δx, or T.
+    statistics : Statistics
+    """
+
+    discretisation: Discretisation
+    unknowns: Array
+    statistics: Statistics
+
+    @property
+    def scene(self) -> Scene:
+        """The scene that was solved."""
+        return self.discretisation.scene
+
+    @property
+    def points(self) -> Array:
+        """Particle centres, shape (N, 2), m."""
+        return self.discretisation.lattice.points
+
+    @property
+    def spacing(self) -> float:
+        """Δx, m."""
+        return self.scene.spacing
+
+    @property
+    def prescribed(self) -> NDArray[np.bool_]:
+        """Particles of which everything is prescribed, shape (N,)."""
+        return np.logical_and.reduce(self.discretisation.prescribed, axis=0)
+
+    def _need(self, elastic: bool) -> None:
+        if self.scene.elastic != elastic:
+            held = "temperatures" if elastic else "displacements"
+            raise AttributeError(f"this solution holds {held}, not what was asked for")
+
+    @property
+    def displacement(self) -> Array:
+        """u, shape (N, 2), m."""
+        self._need(True)
+        return self.unknowns[:2].T
+
+    @property
+    def rotation(self) -> Array:
+        """θ, shape (N,), rad; NaN where the solid has no rotations (no shear stiffness)."""
+        self._need(True)
+        if len(self.unknowns) < 3:
+            return np.full(self.unknowns.shape[1], np.nan)
+        return self.unknowns[2] / self.spacing
+
+    @property
+    def temperature(self) -> Array:
+        """T, shape (N,), K (the potential, V, in electrical conduction)."""
+        self._need(False)
+        return self.unknowns[0]

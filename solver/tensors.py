@@ -1,0 +1,226 @@
+"""Macroscopic tensors of the solid: plane elasticity and conductivity.
+
+A tensor is validated once, here, so that nothing downstream has to doubt it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+Plane = Literal["stress", "strain"]
+
+# Entries that differ by less than this share of the largest are taken for rounding.
+_SYMMETRY_TOLERANCE = 1e-10
+
+
+def _validated(values: ArrayLike, size: int, what: str) -> Array:
+    """Return a symmetric positive-definite float64 copy, or say in words why there is none."""
+    array = np.array(values, dtype=np.float64)
+    if array.shape != (size, size):
+        raise ValueError(f"{what} must be {size}×{size}, got shape {array.shape}")
+    if not np.all(np.isfinite(array)):
+        raise ValueError(f"{what} has entries that are not finite:\n{array}")
+    scale = np.abs(array).max()
+    if scale == 0.0 or np.abs(array - array.T).max() > _SYMMETRY_TOLERANCE * scale:
+        raise ValueError(f"{what} must be symmetric and not zero:\n{array}")
+    array = 0.5 * (array + array.T)
+    smallest, largest = np.linalg.eigvalsh(array)[[0, -1]]
+    if smallest <= 1e-14 * largest:
+        raise ValueError(
+            f"{what} is not positive definite (smallest eigenvalue {smallest:.6g}, "
+            f"largest {largest:.6g}): its energy would not be bounded below"
+        )
+    array.setflags(write=False)
+    return array
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticTensor:
+    """Plane elastic stiffness in Voigt notation with engineering shear (Eqs. 40–41).
+
+    Parameters
+    ----------
+    voigt : array_like, shape (3, 3)
+        [[C11, C12, C16], [C12, C22, C26], [C16, C26, C66]] in Pa; σ = C (ε11, ε22, 2 ε12).
+
+    Raises
+    ------
+    ValueError
+        If the matrix is not 3×3, not finite, not symmetric or not positive definite.
+
+    Examples
+    --------
+    >>> ElasticTensor.isotropic(E=1.0, nu=0.25).voigt[0, 0]
+    np.float64(1.0666666666666667)
+    """
+
+    voigt: Array
+    physics: str = field(default="elastic", init=False, repr=False)
+
+    def __init__(self, voigt: ArrayLike) -> None:
+        object.__setattr__(self, "voigt", _validated(voigt, 3, "the elastic tensor"))
+        object.__setattr__(self, "physics", "elastic")
+
+    @classmethod
+    def isotropic(cls, E: float, nu: float, plane: Plane = "stress") -> ElasticTensor:
+        """Isotropic solid of Young modulus `E` (Pa) and Poisson ratio `nu`.
+
+        Raises
+        ------
+        ValueError
+            If E ≤ 0, or ν lies outside (−1, 1) in plane stress or (−1, 1/2) in plane strain.
+        """
+        shear = E / (2.0 * (1.0 + nu)) if nu > -1.0 else -1.0
+        return cls.orthotropic(E, E, shear, nu, plane=plane, E3=E, nu13=nu, nu23=nu)
+
+    @classmethod
+    def orthotropic(
+        cls,
+        E1: float,
+        E2: float,
+        G12: float,
+        nu12: float,
+        plane: Plane = "stress",
+        E3: float | None = None,
+        nu13: float | None = None,
+        nu23: float | None = None,
+    ) -> ElasticTensor:
+        """Orthotropic solid with material axes along the reference axes.
+
+        Parameters
+        ----------
+        E1, E2, G12 : float
+            Young and shear moduli, Pa.
+        nu12 : float
+            Contraction along 2 under tension along 1, divided by the extension.
+        plane : {"stress", "strain"}
+            Plane strain eliminates σ33 and needs the constants of the third axis.
+        E3, nu13, nu23 : float, optional
+            Out-of-plane constants, for plane strain only.
+
+        Raises
+        ------
+        ValueError
+            If a modulus is not positive, a constant is missing, or the solid (in three
+            dimensions where it is given in three) is not positive definite.
+        """
+        if not all(np.isfinite(v) and v > 0.0 for v in (E1, E2, G12)):
+            raise ValueError(f"moduli must be positive: E1={E1}, E2={E2}, G12={G12}")
+        compliance = np.array(
+            [[1 / E1, -nu12 / E1, 0.0], [-nu12 / E1, 1 / E2, 0.0], [0.0, 0.0, 1 / G12]]
+        )
+        if plane == "strain":
+            if E3 is None or nu13 is None or nu23 is None:
+                raise ValueError("plane strain of an orthotropic solid needs E3, nu13 and nu23")
+            out_of_plane = np.array([-nu13 / E1, -nu23 / E2])
+            solid = np.zeros((3, 3))
+            solid[:2, :2] = compliance[:2, :2]
+            solid[:2, 2] = solid[2, :2] = out_of_plane
+            solid[2, 2] = 1 / E3
+            _validated(solid, 3, "the compliance of the normal strains in three dimensions")
+            compliance[:2, :2] -= np.outer(out_of_plane, out_of_plane) * E3
+        elif plane != "stress":
+            raise ValueError(f"plane must be 'stress' or 'strain', not {plane!r}")
+        return cls(np.linalg.inv(_validated(compliance, 3, "the compliance")))
+
+    @property
+    def compliance(self) -> Array:
+        """S = C⁻¹, shape (3, 3), 1/Pa."""
+        return np.linalg.inv(self.voigt)
+
+    def rotated(self, angle: float) -> ElasticTensor:
+        """The same solid turned anticlockwise by `angle` (rad), in the reference basis.
+
+        Off-axis components are Ĉ(ψ) = Q_σ(ψ) C Q_σ(ψ)ᵀ (Eq. 45) for a turned *basis*; a turned
+        solid is a basis turned the other way.
+        """
+        q = stress_rotation(-angle)
+        return ElasticTensor(q @ self.voigt @ q.T)
+
+    def orthotropy_angle(self) -> float | None:
+        """Angle (rad, in [0, π/2)) of a material axis, or None for a solid without one.
+
+        The solid is orthotropic if the second and fourth harmonics of Ĉ1111(ψ) are both even
+        about some direction.
+        """
+        c = self.voigt
+        second = complex(c[0, 0] - c[1, 1], 2 * (c[0, 2] + c[1, 2]))
+        fourth = complex(c[0, 0] + c[1, 1] - 2 * c[0, 1] - 4 * c[2, 2], 4 * (c[0, 2] - c[1, 2]))
+        tiny = 1e-9 * np.abs(c).max()
+        if abs(second) < tiny:
+            return float(np.angle(fourth) / 4 % (np.pi / 2)) if abs(fourth) > tiny else 0.0
+        zeta = float(np.angle(second) / 2)
+        if abs((fourth * np.exp(-4j * zeta)).imag) > 1e3 * tiny:
+            return None
+        return zeta % (np.pi / 2)
+
+
+def stress_rotation(psi: float) -> Array:
+    """Q_σ(ψ) of Eq. 43: stress components in a basis turned anticlockwise by ψ (rad)."""
+    c, s = np.cos(psi), np.sin(psi)
+    return np.array(
+        [[c * c, s * s, 2 * c * s], [s * s, c * c, -2 * c * s], [-c * s, c * s, c * c - s * s]]
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class ConductivityTensor:
+    """Plane thermal or electrical conductivity (Eqs. 136–137), q = −D ∇T.
+
+    Parameters
+    ----------
+    matrix : array_like, shape (2, 2)
+        Symmetric positive definite, W/(m K) or S/m.
+
+    Raises
+    ------
+    ValueError
+        If the matrix is not 2×2, not finite, not symmetric or not positive definite.
+    """
+
+    matrix: Array
+    physics: str = field(default="conductive", init=False, repr=False)
+
+    def __init__(self, matrix: ArrayLike) -> None:
+        object.__setattr__(self, "matrix", _validated(matrix, 2, "the conductivity tensor"))
+        object.__setattr__(self, "physics", "conductive")
+
+    @classmethod
+    def isotropic(cls, k: float) -> ConductivityTensor:
+        """Isotropic conductor of conductivity `k`."""
+        return cls(np.diag([k, k]))
+
+    @classmethod
+    def orthotropic(cls, k1: float, k2: float, angle: float = 0.0) -> ConductivityTensor:
+        """Principal conductivities `k1`, `k2`, the first along `angle` (rad)."""
+        return cls(np.diag([k1, k2])).rotated(angle)
+
+    @property
+    def compliance(self) -> Array:
+        """Resistivity D⁻¹, shape (2, 2)."""
+        return np.linalg.inv(self.matrix)
+
+    def rotated(self, angle: float) -> ConductivityTensor:
+        """The same conductor turned anticlockwise by `angle` (rad)."""
+        c, s = np.cos(angle), np.sin(angle)
+        q = np.array([[c, -s], [s, c]])
+        return ConductivityTensor(q @ self.matrix @ q.T)
+
+    def principal(self) -> tuple[float, float, float]:
+        """Largest and smallest conductivity and the angle (rad) of the first (Eqs. 160–162).
+
+        The printed tan⁻¹ of Eq. 162 gives the axis of the *smaller* one when D11 < D22 and
+        divides by zero when they are equal; the two-argument form has neither fault.
+        """
+        d = self.matrix
+        angle = 0.5 * float(np.arctan2(2 * d[0, 1], d[0, 0] - d[1, 1]))
+        low, high = np.linalg.eigvalsh(d)
+        return float(high), float(low), angle
+
+
+Material = ElasticTensor | ConductivityTensor
