@@ -23,7 +23,7 @@ import numba as nb
 import numpy as np
 
 # OpenMP has the cheapest fork and join of Numba's layers; the others are fallbacks.
-nb.config.THREADING_LAYER_PRIORITY = [  # type: ignore[attr-defined]"omp", "tbb", "workqueue"]
+setattr(nb.config, "THREADING_LAYER_PRIORITY", ["omp", "tbb", "workqueue"])  # noqa: B010
 
 _U = np.uint64
 # Contraction to fused multiply-adds only: sums keep their order.

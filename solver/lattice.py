@@ -80,9 +80,9 @@ class Lattice:
         """x of the columns and y of the rows of the padded grid, m."""
         i0, j0, _, _ = self._box
         rows, columns = self.shape
-        x: Array = (np.arange(columns) - self.pad + i0 + 0.5) * self.spacing
-        y: Array = (np.arange(rows) - self.pad + j0 + 0.5) * self.spacing
-        return x, y
+        x = np.arange(columns, dtype=np.float64) - self.pad + i0 + 0.5
+        y = np.arange(rows, dtype=np.float64) - self.pad + j0 + 0.5
+        return np.multiply(x, self.spacing), np.multiply(y, self.spacing)
 
     @cached_property
     def mask(self) -> Mask:

@@ -178,7 +178,7 @@ def _solve(system: Array, target: Array, what: str) -> Array:
 def _circle(law: AngularLaw) -> Array:
     """Angles whose equal-weight mean is exact for the law times two direction pairs."""
     count = 4 * (law.degree + 8)
-    return np.arange(count) * (2 * np.pi / count)
+    return np.linspace(0.0, 2 * np.pi, count, endpoint=False)
 
 
 def _elastic(

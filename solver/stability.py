@@ -177,10 +177,21 @@ def assess(family: Family, moduli: Moduli, count: int = 48) -> Stability:
     Stability
     """
     k = brillouin_zone(count)
+    low = high = 0.0
+    if isinstance(moduli, ElasticModuli) and moduli.has_shear:
+        rotation = symbol(family, moduli, k)[:, 2, 2].real
+        scale = 0.5 * float(
+            (family.weight * family.cell * family.length * np.abs(moduli.shear)).sum()
+        )
+        low, high = float(rotation.min()) / scale, float(rotation.max()) / scale
+        if low <= _SINGULAR and high >= -_SINGULAR:
+            # H_θθ changes sign: the condensed symbol has a pole somewhere.
+            pole = k[np.argmin(np.abs(rotation))]
+            return Stability("inadmissible", -np.inf, (float(pole[0]), float(pole[1])), (low, high))
     values = margins(family, moduli, k)
     worst = k[np.argmin(values)]
     margin = float(values.min())
-    if np.isfinite(margin):
+    if margin > _SINGULAR:
         found = minimize(
             lambda q: float(margins(family, moduli, q)) if q @ q > 1e-6 else 1e300,
             worst,
@@ -189,19 +200,8 @@ def assess(family: Family, moduli: Moduli, count: int = 48) -> Stability:
         )
         if found.fun < margin:
             margin, worst = float(found.fun), (found.x + np.pi) % (2 * np.pi) - np.pi
-    low = high = 0.0
-    if isinstance(moduli, ElasticModuli) and moduli.has_shear:
-        rotation = symbol(family, moduli, k)[:, 2, 2].real
-        scale = 0.5 * float(
-            (family.weight * family.cell * family.length * np.abs(moduli.shear)).sum()
-        )
-        low, high = float(rotation.min()) / scale, float(rotation.max()) / scale
     sign: Sign = "positive"
-    if low <= _SINGULAR and high >= -_SINGULAR and (low, high) != (0.0, 0.0):
-        # H_θθ changes sign: the condensed symbol has a pole somewhere.
-        sign, margin = "inadmissible", -np.inf
-        worst = k[np.argmin(np.abs(rotation))]
-    elif margin <= _SINGULAR:
+    if margin <= _SINGULAR:
         sign = "inadmissible"
     elif high < 0:
         sign = "indefinite"

@@ -131,7 +131,7 @@ class ElasticTensor:
     @property
     def compliance(self) -> Array:
         """S = C⁻¹, shape (3, 3), 1/Pa."""
-        return np.linalg.inv(self.voigt)
+        return np.asarray(np.linalg.inv(self.voigt), dtype=np.float64)
 
     def rotated(self, angle: float) -> ElasticTensor:
         """The same solid turned anticlockwise by `angle` (rad), in the reference basis.
@@ -203,7 +203,7 @@ class ConductivityTensor:
     @property
     def compliance(self) -> Array:
         """Resistivity D⁻¹, shape (2, 2)."""
-        return np.linalg.inv(self.matrix)
+        return np.asarray(np.linalg.inv(self.matrix), dtype=np.float64)
 
     def rotated(self, angle: float) -> ConductivityTensor:
         """The same conductor turned anticlockwise by `angle` (rad)."""
