@@ -223,6 +223,8 @@ class Case:
         The method whose fields and lines the report draws.
     length : str
         The length that resolutions divide: spacing = length/n.
+    timed : bool
+        Whether its seconds mean anything and belong in a work-precision diagram.
     """
 
     name: str
@@ -238,6 +240,7 @@ class Case:
     figures: tuple[str, ...] = ()
     tags: tuple[str, ...] = ()
     length: str = "a"
+    timed: bool = True
 
     def __post_init__(self) -> None:
         names = [method.name for method in self.methods]

@@ -1,0 +1,5 @@
+"""`python -m cmverify`."""
+
+from cmverify.cli import main
+
+main()

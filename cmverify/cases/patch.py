@@ -1,0 +1,166 @@
+"""Elastic patch test: quadratic displacement fields in equilibrium, for tensors of every sign.
+
+Displacement and rotation of a random quadratic equilibrium field are prescribed in a layer of 5.5
+cells around a square; the lattice has to find the field inside. It can be exact, because the
+calibrated lattice gives every constant strain its exact energy and a linear strain its exact
+balance of forces. The sign of C66 - C12 is that of the mean shear modulus of the bonds: positive,
+zero (no rotations at all) or negative (an indefinite matrix), and each is tried.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from cmverify import adapters
+from cmverify.case import Array, Case, Check, Level, Measurement, Method
+from cmverify.norms import relative_l2
+
+SIGNS = ("positive", "zero", "negative")
+TENSORS = 6  # admissible ones tried of each sign
+ATTEMPTS = 200
+SEED = 2022
+LADDER = {Level.QUICK: (20,), Level.STANDARD: (20, 40), Level.PAPER: (20, 40)}
+
+
+@dataclass(frozen=True)
+class Patch:
+    """The sign of C66 - C12 and, for tests, a factor on the stiffness C11 the solver is given."""
+
+    sign: str
+    distortion: float = 1.0
+
+
+def random_tensors(sign: str) -> Iterator[Array]:
+    """Random positive-definite plane tensors, (3, 3) in Voigt's order, of one sign of C66 - C12.
+
+    Zero means Cauchy's symmetry exactly: C66 = C12. Endless, from a fixed seed.
+    """
+    generator = np.random.default_rng([SEED, SIGNS.index(sign)])
+    while True:
+        factor = generator.normal(size=(3, 3))
+        voigt = factor @ factor.T + 0.5 * np.eye(3)
+        if sign == "zero":
+            voigt[2, 2] = voigt[0, 1]
+        if np.linalg.eigvalsh(voigt)[0] < 0.05:
+            continue
+        mean = voigt[2, 2] - voigt[0, 1]
+        if sign == "zero" or np.sign(mean) == (1 if sign == "positive" else -1):
+            yield voigt / np.linalg.norm(voigt)
+
+
+def error(voigt: Array, generator: np.random.Generator, n: int, distortion: float) -> dict:
+    """Relative L2 errors of displacement and rotation of one random field, and the solution."""
+    from references.analytic.elasticity import combine, equilibrium_polynomials
+    from solver import ElasticTensor, Scene, Support, UniformShear, rectangle
+
+    law=None
+
+    fields = [f for degree in (1, 2) for f in equilibrium_polynomials(voigt, degree)]
+    exact = combine(fields, generator.normal(size=len(fields)))
+    given = voigt.copy()
+    given[0, 0] *= distortion
+    scene = Scene(
+        region=rectangle(1.0, 1.0),
+        spacing=1.0 / n,
+        m=3,
+        material=ElasticTensor(given),
+        calibration="lattice",
+        law=law,
+        supports=[
+            Support.layer(cells=3.5, displacement=exact.displacement, rotation=exact.rotation)
+        ],
+    )
+    solution = scene.solve(tolerance=1e-13)
+    free = ~solution.prescribed
+    x, y = solution.points[free].T
+    found = {"displacement": relative_l2(solution.displacement[free], exact.displacement(x, y))}
+    if not np.isnan(solution.rotation).all():
+        found["rotation"] = relative_l2(solution.rotation[free], exact.rotation(x, y))
+    return {"errors": found, "statistics": solution.statistics}
+
+
+def patch(problem: Patch, n: int) -> Measurement:
+    """The worst error over several admissible random tensors of one sign.
+
+    Tensors that the solver refuses as inadmissible or not representable are counted, not solved.
+
+    Raises
+    ------
+    RuntimeError
+        If too few tensors of that sign are accepted.
+    """
+    from solver import CalibrationError, InadmissibleMaterialError
+
+    generator = np.random.default_rng(SEED)
+    worst: dict[str, float] = {}
+    seconds: dict[str, float] = {}
+    solved, refused, unknowns, methods = 0, 0, 0, set()
+    for _, voigt in zip(range(ATTEMPTS), random_tensors(problem.sign), strict=False):
+        try:
+            found = error(voigt, generator, n, problem.distortion)
+        except (InadmissibleMaterialError, CalibrationError):
+            refused += 1
+            continue
+        statistics = found["statistics"]
+        for name, value in found["errors"].items():
+            worst[name] = float(np.fmax(worst.get(name, 0.0), value) if value == value else value)
+        for stage, spent in adapters.solver_seconds(statistics).items():
+            seconds[stage] = seconds.get(stage, 0.0) + spent
+        unknowns = max(unknowns, statistics.unknowns)
+        methods.add(statistics.method)
+        solved += 1
+        if solved == TENSORS:
+            break
+    else:
+        raise RuntimeError(
+            f"of {ATTEMPTS} tensors with C66 - C12 {problem.sign} only {solved} "
+            f"were accepted, {TENSORS} were wanted"
+        )
+    return Measurement(
+        unknowns,
+        worst,
+        seconds,
+        {"tensors": solved, "refused": refused, "method": ", ".join(sorted(methods))},
+    )
+
+
+QUANTITIES = {
+    "displacement": "worst relative L2 error of the displacement over the tensors",
+    "rotation": "worst relative L2 error of the rotation over the tensors",
+}
+SOURCE = "issue A, what must hold"
+NAMES = {"positive": "C66 > C12", "zero": "C66 = C12", "negative": "C66 < C12"}
+
+CASES = (
+    Case(
+        name="elastic-patch",
+        title="Elastic patch test with random tensors of every sign of C₆₆ − C₁₂",
+        section="Sect. 2.2",
+        equations=("Eqs. 65–70, on the lattice's own sums",),
+        tags=("patch", "elasticity"),
+        shows=(
+            "Given displacement and rotation in the layer, any quadratic field in equilibrium is "
+            "reproduced to rounding, whether the shear bonds are stiff, absent or of negative "
+            "stiffness."
+        ),
+        methods=tuple(
+            Method(f"bond/lattice {NAMES[s]}", "bond", partial(patch, Patch(s)), LADDER)
+            for s in SIGNS
+        ),
+        checks=tuple(
+            Check(f"bond/lattice {NAMES[s]}", quantity, {20: 1e-11}, source=SOURCE)
+            for s in SIGNS
+            for quantity in ("displacement", "rotation")
+            if (s, quantity) != ("zero", "rotation")  # no shear bonds, no rotations
+        ),
+        quantities=QUANTITIES,
+        primary="displacement",
+        featured="bond/lattice C66 > C12",
+        length="L",
+        timed=False,
+    ),
+)

@@ -1,0 +1,218 @@
+"""Render a run's summary as one HTML page, with the fields beside it as .vtu and .npz."""
+
+from __future__ import annotations
+
+import base64
+import io
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cmverify import precision
+from cmverify.case import Measurement
+from cmverify.results import write_text
+from cmverify.summary import CaseResult, RunInfo, all_passed, table
+from cmverify.verdict import Verdict
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure as a data URI with its caption and a text for those who cannot see it."""
+
+    uri: str
+    caption: str
+    alt: str
+    wide: bool = False
+
+
+def build(summary: Sequence[CaseResult], info: RunInfo, folder: Path) -> Path:
+    """Write index.html (and the featured fields under fields/) into a folder.
+
+    Returns
+    -------
+    Path of index.html
+    """
+    from jinja2 import Environment, StrictUndefined
+
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
+    environment.filters.update(number=number, seconds=seconds, count=count, mathtext=mathtext)
+    resources = files("cmverify.report")
+    template = environment.from_string((resources / "template.html").read_text())
+    page = template.render(
+        css=(resources / "style.css").read_text(),
+        info=info,
+        passed=all_passed(summary),
+        verdicts=[v for result in summary for v in _failures_first(result.verdicts)],
+        sections=[_section(result, folder) for result in summary],
+    )
+    path = folder / "index.html"
+    write_text(path, page)
+    return path
+
+
+def _failures_first(verdicts: Sequence[Verdict]) -> list[Verdict]:
+    return sorted(verdicts, key=lambda v: v.passed)
+
+
+def _section(result: CaseResult, folder: Path) -> dict[str, Any]:
+    """Everything the template needs to know about one case."""
+    case = result.case
+    rows = table(result)
+    quantities = [q for q in case.quantities if any(q in row.quantities for row in rows)]
+    points = precision.points(case, result.outcomes)
+    level_command = f"cmverify run {case.name} --level {{level}} --jobs {{jobs}} --out report"
+    return {
+        "case": case,
+        "result": result,
+        "rows": rows,
+        "quantities": quantities,
+        "pictures": _pictures(result, points),
+        "comparison": _comparison(result, points),
+        "downloads": _export(result, folder),
+        "command": level_command,
+        "timed": any(not math.isnan(row.total) and row.total > 0 for row in rows),
+    }
+
+
+def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture]:
+    from cmverify.report import figures
+
+    case, pictures = result.case, []
+    curves = [p for p in points if p.error >= 0.0]
+    if any(p.seconds > 0 for p in curves):
+        quantity = case.quantities[case.primary]
+        pictures.append(
+            Picture(
+                _svg(figures.convergence_plot(case, curves, case.length)),
+                f"{_capital(quantity)} over spacing or element size.",
+                _spoken(curves, "error"),
+            )
+        )
+        pictures.append(
+            Picture(
+                _svg(figures.work_precision_plot(case, curves, case.length)),
+                "The same error over the wall time of set-up and solve; "
+                "meshing and JIT compilation are not counted.",
+                _spoken(curves, "seconds"),
+            )
+        )
+    featured = {
+        n: m
+        for n, m in result.outcomes.get(case.featured, {}).items()
+        if isinstance(m, Measurement)
+    }
+    if not featured:
+        return pictures
+    finest = max(featured)
+    where = f"{case.featured} at Δx = {case.length}/{finest}"
+    fields = featured[finest].fields
+    for key, item in (fields.items if fields else {}).items():
+        assert fields is not None
+        caption = f"{mathtext(item.label)}: {where}, particles that are not prescribed."
+        alt = f"Maps of {key}: computed, reference and their difference; {where}."
+        figure = figures.field_panels(fields, item, case.length)
+        pictures.append(Picture(_png(figure), caption, alt, wide=True))
+    for line, series in figures.lines_of(featured):
+        title = mathtext(line.title)
+        caption = f"{title}. {_capital(where)}." if not line.over_resolutions else f"{title}."
+        alt = f"Line plot: {title}; markers computed, line closed form."
+        pictures.append(Picture(_svg(figures.line_plot(line, series, case.length)), caption, alt))
+    return pictures
+
+
+def _comparison(result: CaseResult, points: list[precision.Point]) -> list[dict[str, Any]]:
+    """Seconds in which each method reaches the same errors, those of the plainest FEM."""
+    fem = [p for p in points if p.kind == "fem" and p.seconds > 0]
+    if not fem:
+        return []
+    first = fem[0].method
+    targets = [p.error for p in fem if p.method == first]
+    names = list(dict.fromkeys(p.method for p in points))
+    return [
+        {
+            "method": name,
+            "seconds": [
+                precision.seconds_for([p for p in points if p.method == name], target)
+                for target in targets
+            ],
+            "targets": targets,
+        }
+        for name in names
+    ]
+
+
+def _export(result: CaseResult, folder: Path) -> list[str]:
+    """Write the featured fields; returns their paths relative to the page."""
+    from cmverify.export import write_fields
+
+    found = result.finest(result.case.featured)
+    if found is None or found[1].fields is None:
+        return []
+    resolution, measurement = found
+    name = f"{result.case.name}-{result.case.featured.replace('/', '-')}-{resolution}"
+    assert measurement.fields is not None
+    paths = write_fields(measurement.fields, folder / "fields" / name)
+    return [path.relative_to(folder).as_posix() for path in paths]
+
+
+def _svg(figure: Figure) -> str:
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="svg", metadata={"Date": None})
+    return "data:image/svg+xml;base64," + base64.b64encode(buffer.getvalue()).decode()
+
+
+def _png(figure: Figure) -> str:
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=130)
+    return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode()
+
+
+def _spoken(points: Sequence[precision.Point], what: str) -> str:
+    """The plot's data as a sentence for screen readers."""
+    parts = []
+    for p in points:
+        after = f" in {p.seconds:.2g} s" if what == "seconds" else ""
+        parts.append(f"{p.method} at 1/{p.resolution}: {p.error:.1e}{after}")
+    return "; ".join(parts) + "."
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def number(value: float | None, digits: int = 2) -> str:
+    """A figure with few digits: 0.00123 as "1.2e-3", counts as they are."""
+    if value is None or math.isnan(value):
+        return "n/a"
+    if value == int(value) and 1 <= abs(value) < 1e9:
+        return f"{int(value):,}".replace(",", "\u202f")
+    if 0.1 <= abs(value) < 1000:
+        return f"{value:.{digits + 1}g}"
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    return f"{mantissa}e{int(exponent)}"
+
+
+def count(value: int | None) -> str:
+    """A whole number in groups of three."""
+    return "–" if value is None else f"{value:,}".replace(",", "\u202f")
+
+
+def seconds(value: float | None) -> str:
+    """Seconds to a sensible digit."""
+    if value is None or math.isnan(value):
+        return "–"
+    return f"{value:.3f}" if value < 1 else f"{value:.2f}" if value < 100 else f"{value:.0f}"
+
+
+def mathtext(label: str) -> str:
+    """Plain Unicode for the little mathtext that labels use."""
+    text = label.replace("$", "").replace("\\sigma", "σ").replace("{", "").replace("}", "")
+    for index, sub in (("_11", "₁₁"), ("_22", "₂₂"), ("_12", "₁₂"), ("_1", "₁"), ("_2", "₂")):
+        text = text.replace(index, sub)
+    return text

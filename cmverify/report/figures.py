@@ -1,0 +1,215 @@
+"""The report's figures, from measurements to matplotlib figures; nothing is computed here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.tri import Triangulation
+
+from cmverify.case import Case, Field, FieldSet, LinePlot, Measurement
+from cmverify.convergence import fitted_order
+from cmverify.precision import Point
+from cmverify.report import style
+
+ROUNDING = 1e-12
+WIDE, NARROW = (10.2, 3.15), (5.2, 3.9)
+
+
+def field_panels(fields: FieldSet, item: Field, length: str = "a") -> Figure:
+    """Computed and reference on one colour scale, their difference on its own.
+
+    A singular field is cut at its 0.5 and 99.5 percentiles; the colour bars' arrows say so.
+    """
+    with matplotlib.rc_context(style.RC):
+        figure = Figure(figsize=WIDE)
+        axes = figure.subplots(1, 3, sharex=True, sharey=True)
+        low, high = np.nanpercentile(item.reference, [0.5, 99.5])
+        reach = np.nanpercentile(np.abs(item.difference), 99.5) or np.finfo(float).tiny
+        unit = "" if item.unit == "1" else f" ({item.unit})"
+        panels = (
+            ("computed", item.computed, "viridis", low, high),
+            ("reference", item.reference, "viridis", low, high),
+            ("computed − reference", item.difference, "RdBu_r", -reach, reach),
+        )
+        for axis, (title, values, cmap, bottom, top) in zip(axes, panels, strict=True):
+            image = _draw(axis, fields, values, cmap, bottom, top)
+            axis.set_title(title)
+            axis.set_xlabel(f"$x_1/{length}$")
+            axis.set_aspect("equal")
+            axis.grid(False)
+            extend = _extend(values, bottom, top)
+            bar = figure.colorbar(image, ax=axis, shrink=0.86, pad=0.02, extend=extend)
+            bar.set_label(f"{item.label}{unit}" if axis is not axes[2] else f"Δ {item.label}{unit}")
+            bar.formatter.set_powerlimits((-2, 3))
+            bar.outline.set_visible(False)
+        axes[0].set_ylabel(f"$x_2/{length}$")
+        return figure
+
+
+def line_plot(line: LinePlot, series: Mapping[int, LinePlot], length: str = "a") -> Figure:
+    """Markers for the computed values, a black line for the reference.
+
+    Parameters
+    ----------
+    line : LinePlot
+        The finest.
+    series : mapping
+        The same plot at every resolution, for those that want them all.
+    """
+    with matplotlib.rc_context(style.RC):
+        figure = Figure(figsize=NARROW)
+        axis = figure.subplots()
+        if line.over_resolutions:
+            curves = [(f"Δx = {length}/{n}", p.curves[0]) for n, p in sorted(series.items())]
+            drawn = [line.curves[0]]
+        else:
+            curves = [(curve.label, curve) for curve in line.curves]
+            drawn = list(line.curves)
+        for curve in drawn:
+            label = "closed form" if curve is drawn[0] else None
+            axis.plot(curve.abscissa, curve.reference, "k-", linewidth=1.1, label=label, zorder=2)
+        for index, (label, curve) in enumerate(curves):
+            every = max(1, len(curve.abscissa) // 40)
+            look = style.of_index(index)
+            axis.plot(
+                curve.abscissa[::every], curve.computed[::every], linestyle="none", zorder=3,
+                label=label, markerfacecolor="none", markeredgewidth=1.2, **look,
+            )  # fmt: skip
+        axis.set_xlabel(line.xlabel)
+        axis.set_ylabel(line.ylabel)
+        axis.set_title(line.title)
+        axis.legend(loc="best")
+        return figure
+
+
+def convergence_plot(case: Case, points: Iterable[Point], length: str = "a") -> Figure:
+    """Error over spacing for every method, with fitted orders and the bounds that are judged."""
+    with matplotlib.rc_context(style.RC):
+        figure = Figure(figsize=NARROW)
+        axis = figure.subplots()
+        for name, series in _by_method(points):
+            h = np.array([1.0 / p.resolution for p in series])
+            e = np.array([p.error for p in series])
+            look = style.of_method(name)
+            fit = fitted_order(h, e, ROUNDING) if len(h) > 1 else None
+            exact = bool(np.all(e <= ROUNDING * 10))
+            note = "rounding" if exact else (f"order {fit.order:.2f}" if fit else "")
+            axis.loglog(h, np.maximum(e, 1e-17), label=f"{name}: {note}", **look)
+            for check in case.checks:
+                if check.method == name and check.quantity == case.primary and check.at_most:
+                    _bounds(axis, [p.resolution for p in series], check.bound_at, look["color"])
+        _shade_rounding(axis)
+        axis.set_xlabel(f"spacing or element size, $h/{length}$")
+        axis.set_ylabel(case.quantities[case.primary])
+        axis.set_title("Convergence, with fitted order (bars: what must hold)")
+        _few_ticks(axis, points)
+        axis.legend(loc="best")
+        return figure
+
+
+def work_precision_plot(case: Case, points: Iterable[Point], length: str = "a") -> Figure:
+    """Error over wall seconds for every method: down and to the left is better."""
+    with matplotlib.rc_context(style.RC):
+        figure = Figure(figsize=NARROW)
+        axis = figure.subplots()
+        for name, series in _by_method(points):
+            seconds = [p.seconds for p in series]
+            errors = [max(p.error, 1e-17) for p in series]
+            axis.loglog(seconds, errors, label=name, **style.of_method(name))
+            axis.annotate(
+                f"{length}/{series[-1].resolution}", (seconds[-1], errors[-1]),
+                xytext=(5, 4), textcoords="offset points", fontsize=8, color="#444",
+            )  # fmt: skip
+        _shade_rounding(axis)
+        axis.set_xlabel("set-up and solve (wall seconds)")
+        axis.set_ylabel(case.quantities[case.primary])
+        axis.set_title("Error against time (lower left is better)")
+        axis.margins(x=0.12)
+        axis.legend(loc="best")
+        return figure
+
+
+def _by_method(points: Iterable[Point]) -> list[tuple[str, list[Point]]]:
+    groups: dict[str, list[Point]] = {}
+    for point in points:
+        groups.setdefault(point.method, []).append(point)
+    return list(groups.items())
+
+
+def _bounds(axis: Axes, resolutions: Sequence[int], bound_at, color: str) -> None:  # type: ignore[no-untyped-def]
+    for n in resolutions:
+        bound = bound_at(n)
+        if bound is not None:
+            h = 1.0 / n
+            axis.plot([h / 1.13, h * 1.13], [bound, bound], color=color, linewidth=3, alpha=0.45)
+
+
+def _shade_rounding(axis: Axes) -> None:
+    low, high = axis.get_ylim()
+    if low < ROUNDING:
+        axis.axhspan(low, ROUNDING, color="#eef1f4", zorder=0)
+        axis.text(
+            0.985, ROUNDING, "rounding", transform=axis.get_yaxis_transform(),
+            fontsize=8, color="#667", va="top", ha="right",
+        )  # fmt: skip
+        axis.set_ylim(low, high)
+
+
+def _few_ticks(axis: Axes, points: Iterable[Point]) -> None:
+    """Ticks at the spacings themselves, as fractions of the length."""
+    sizes = sorted({p.resolution for p in points}, reverse=True)
+    axis.set_xticks([1.0 / n for n in sizes], [f"1/{n}" for n in sizes])
+    axis.minorticks_off()
+
+
+def _draw(axis: Axes, fields: FieldSet, values: np.ndarray, cmap: str, low: float, high: float):  # type: ignore[no-untyped-def]
+    if fields.triangles is not None:
+        mesh = Triangulation(*fields.points.T, fields.triangles)
+        return axis.tripcolor(
+            mesh, values, cmap=cmap, vmin=low, vmax=high, shading="gouraud", rasterized=True
+        )
+    image, extent = as_image(fields.points, values, fields.spacing or 1.0)
+    return axis.imshow(
+        image, origin="lower", extent=extent, cmap=cmap, vmin=low, vmax=high,
+        interpolation="nearest",
+    )  # fmt: skip
+
+
+def as_image(
+    points: np.ndarray, values: np.ndarray, spacing: float
+) -> tuple[np.ndarray, tuple[float, float, float, float]]:
+    """Lattice values as an image (rows along x2, NaN where there is no particle) and its extent."""
+    origin = points.min(axis=0)
+    column, line = np.rint((points - origin) / spacing).astype(int).T
+    image = np.full((line.max() + 1, column.max() + 1), np.nan)
+    image[line, column] = values
+    left, bottom = origin - 0.5 * spacing
+    extent = (left, left + spacing * image.shape[1], bottom, bottom + spacing * image.shape[0])
+    return image, tuple(float(edge) for edge in extent)  # type: ignore[return-value]
+
+
+def _extend(values: np.ndarray, low: float, high: float) -> str:
+    """Arrows on a colour bar only where a part of the values lies visibly beyond it."""
+    slack = 0.02 * (high - low)
+    under, over = np.nanmin(values) < low - slack, np.nanmax(values) > high + slack
+    return {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}[int(under), int(over)]
+
+
+def lines_of(
+    measurements: Mapping[int, Measurement],
+) -> list[tuple[LinePlot, dict[int, LinePlot]]]:
+    """Each line plot of the finest measurement, with the same plot at every resolution."""
+    if not measurements:
+        return []
+    finest = measurements[max(measurements)]
+    return [
+        (line, {n: m.lines[i] for n, m in measurements.items() if i < len(m.lines)})
+        for i, line in enumerate(finest.lines)
+    ]
