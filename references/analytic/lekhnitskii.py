@@ -18,7 +18,7 @@ to full accuracy even where the roots themselves coincide.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -118,19 +118,29 @@ def characteristic_roots(voigt: ArrayLike) -> Complexes:
     return np.sort_complex(roots)
 
 
-class _Pair(NamedTuple):
+class RootPair(NamedTuple):
     """Values of a function at the two roots and its divided difference between them."""
 
-    first: Complexes | complex
-    second: Complexes | complex
-    difference: Complexes | complex
+    # Complex numbers, or complex arrays of the points' shape.
+    first: Any
+    second: Any
+    difference: Any
 
-    def times(self, other: _Pair) -> _Pair:
+    def times(self, other: RootPair) -> RootPair:
         """The product of two functions (Leibniz' rule for divided differences)."""
-        return _Pair(
+        return RootPair(
             self.first * other.first,
             self.second * other.second,
             self.difference * other.first + self.second * other.difference,
+        )
+
+    def over(self, other: RootPair) -> RootPair:
+        """The quotient of two functions."""
+        second = self.second / other.second
+        return RootPair(
+            self.first / other.first,
+            second,
+            (self.difference - second * other.difference) / other.first,
         )
 
 
@@ -147,9 +157,9 @@ class _TipBasis:
         mu = characteristic_roots(voigt)
         p = s[0, 0] * mu**2 - s[0, 2] * mu + s[0, 1]
         q = s[0, 1] * mu + s[1, 1] / mu - s[1, 2]
-        self.mu = _Pair(mu[0], mu[1], 1.0)
-        self.p = _Pair(p[0], p[1], s[0, 0] * (mu[0] + mu[1]) - s[0, 2])
-        self.q = _Pair(q[0], q[1], s[0, 1] - s[1, 1] / (mu[0] * mu[1]))
+        self.mu = RootPair(mu[0], mu[1], 1.0)
+        self.p = RootPair(p[0], p[1], s[0, 0] * (mu[0] + mu[1]) - s[0, 2])
+        self.q = RootPair(q[0], q[1], s[0, 1] - s[1, 1] / (mu[0] * mu[1]))
         # Built by parts, since complex multiplication would lose the sign of y = -0.0, which
         # tells the lower crack face from the upper one.
         z = np.empty((2, *xs.shape), dtype=complex)
@@ -158,15 +168,15 @@ class _TipBasis:
             z.imag[k] = mu[k].imag * ys
         w = np.sqrt(z)
         with np.errstate(divide="ignore", invalid="ignore"):
-            self.root = _Pair(w[0], w[1], np.where(w[0] == 0, 0.0, ys / (w[0] + w[1])))
-            self.inverse = _Pair(1 / w[0], 1 / w[1], -ys / (w[0] * w[1] * (w[0] + w[1])))
+            self.root = RootPair(w[0], w[1], np.where(w[0] == 0, 0.0, ys / (w[0] + w[1])))
+            self.inverse = RootPair(1 / w[0], 1 / w[1], -ys / (w[0] * w[1] * (w[0] + w[1])))
         self.at_tip = np.any((xs == 0.0) & (ys == 0.0))
 
     def refuse_tip(self, what: str) -> None:
         if self.at_tip:
             raise ValueError(f"the {what} is unbounded at the crack tip (a point equals the tip)")
 
-    def field(self, h: _Pair, KI: float, KII: float) -> Floats:
+    def field(self, h: RootPair, KI: float, KII: float) -> Floats:
         """Re[KI (mu1 h2 - mu2 h1) - KII (h1 - h2)] / (mu1 - mu2), the form of every field."""
         return np.real(KI * (h.second - self.mu.second * h.difference) - KII * h.difference)
 
