@@ -129,8 +129,8 @@ def solve_elasticity(
     ------
     ValueError
         For a stiffness that is not positive definite, an unknown boundary, or loads out of balance
-        on a body that nothing holds. (Where they balance, three components are pinned to take
-        the rigid motion out.)
+        on a body that nothing holds. (Where they balance to 0.1 %, what is left is spread over all
+        nodes, and three components are pinned to take the rigid motion out.)
     """
     check_order(order)
     stiffness_tensor = check_voigt(voigt)
@@ -210,12 +210,17 @@ def _pin(
     load: NDArray[np.float64],
 ) -> None:
     """Hold three components of a free body whose loads balance."""
-    force = load[dofs]
-    scale = np.abs(force).sum() + np.finfo(float).tiny
-    moment = (nodes[:, 0] * force[:, 1] - nodes[:, 1] * force[:, 0]).sum()
-    extent = np.ptp(nodes, axis=0).max()
-    if max(np.abs(force.sum(axis=0)).max(), abs(moment) / extent) > 1e-9 * scale:
+    arm = nodes - nodes.mean(axis=0)
+    extent = np.abs(arm).max()
+    rigid = np.zeros((len(nodes), 2, 3))
+    rigid[:, 0, 0] = rigid[:, 1, 1] = 1
+    rigid[:, 0, 2], rigid[:, 1, 2] = -arm[:, 1] / extent, arm[:, 0] / extent
+    flat = rigid.reshape(-1, 3)
+    resultant = flat.T @ load[dofs].ravel()
+    if np.abs(resultant).max() > 1e-3 * np.abs(load).sum():
         raise ValueError("nothing holds the body and its loads are not in equilibrium")
+    # what is left comes from chords in place of curves: spread it over all nodes
+    load[dofs] -= (flat @ np.linalg.solve(flat.T @ flat, resultant)).reshape(-1, 2)
     left = int(np.argmin(nodes[:, 0]))
     far = int(np.argmax(np.hypot(*(nodes - nodes[left]).T)))
     across = 0 if abs(nodes[far, 1] - nodes[left, 1]) > abs(nodes[far, 0] - nodes[left, 0]) else 1
