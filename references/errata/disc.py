@@ -88,6 +88,23 @@ def _flux_sum() -> None:
         require(abs(np.linalg.norm(bare) - 1 - excess) < 0.01, "Eq. 170 without alpha")
 
 
+def _layer_of_the_disc() -> None:
+    # Cells from the edge to which some free particle misses a neighbour of its family.
+    centres = np.arange(-100, 100) + 0.5
+    x, y = np.meshgrid(centres, centres)
+    xi, _ = _family(5)
+
+    def truncated(layer: float) -> int:
+        free = np.hypot(x, y) < 100 - layer
+        outside = np.zeros(np.count_nonzero(free), dtype=bool)
+        for i, j in xi:
+            outside |= np.hypot(x[free] + i, y[free] + j) >= 100
+        return int(np.count_nonzero(outside))
+
+    require(truncated(5.0) == 160, "160 free particles with truncated families as printed")
+    require(truncated(5.5) == 0, "none behind a layer of m + 1/2 cells")
+
+
 def _disc_gradient() -> None:
     field = _cubic(sp.Rational(1, 5))
     vanishes(sp.diff(field, _X) - (sp.Rational(3, 5) * _X**2 - 2 * _X * _Y + _Y**2), "zeta_1")
@@ -123,6 +140,16 @@ ENTRIES = [
         "as printed div(D grad T) = -0.8 x2; the plotted maxima 0.73 and 8.11 belong to the "
         "printed field, those of the solution are 0.70 and 8.85",
         _disc_solution,
+    ),
+    Entry(
+        "Sect. 4.3.1 (layer)",
+        "thickness of the layer with prescribed temperature",
+        "delta = m dx = a/20",
+        "(m + 1/2) dx, since the partial-area family of Sect. 2.1 reaches m + 1/2 cells",
+        "wrong",
+        "at a/100 the families of 160 free particles are cut, so exact moduli do not give an "
+        "exact field",
+        _layer_of_the_disc,
     ),
     Entry(
         "170",

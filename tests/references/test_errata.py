@@ -68,7 +68,14 @@ def test_one_per_cent_in_a_constant_fails_the_proof(monkeypatch):
         "cosine_constants",
         lambda n: (right(n)[0] * sp.Rational(101, 100), right(n)[1]),
     )
-    with pytest.raises(AssertionError, match=r"Eq\. 163"):
+    with pytest.raises(AssertionError, match="n = 2"):
+        errata.entry(163).prove()
+
+
+def test_prove_all_names_what_fails(monkeypatch):
+    broken = model.Entry("0", "t", "p", "d", "wrong", "s", lambda: model.require(False, "no"))
+    monkeypatch.setattr(errata, "entries", lambda: [ENTRIES[0], broken])
+    with pytest.raises(AssertionError, match=r"Eq\. 0: no"):
         errata.prove_all()
 
 
