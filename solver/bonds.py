@@ -92,7 +92,7 @@ class Bonds:
         edge_near = distance_transform_edt(lattice.mask)[rows, columns] <= longest
         near = np.nonzero(edge_near)[0]
         #: Particles that lack at least one neighbour.
-        self.short: Indices = near[~self._exist(near).all(axis=0)]
+        self.short: Indices = near[~self.exist(near).all(axis=0)]
         cut_at, cut = self._cut_bonds(cracks)
 
         special = np.zeros(lattice.count, dtype=bool)
@@ -100,7 +100,7 @@ class Bonds:
         if surface == "volume":
             volume = np.full(lattice.count, full_volume(family))
             physical = self.short[free[self.short]]
-            missing = (family.fraction[:, None] * ~self._exist(physical)).sum(axis=0)
+            missing = (family.fraction[:, None] * ~self.exist(physical)).sum(axis=0)
             volume[physical] -= missing
             volume[cut_at] -= (family.fraction[:, None] * cut).sum(axis=0)
             deficient = volume < full_volume(family) * (1 - 1e-12)
@@ -110,7 +110,7 @@ class Bonds:
                 special |= distance_transform_edt(grid)[rows, columns] <= longest
         #: Particles that own a column of `factors`, in the lattice's order.
         self.special: Indices = np.nonzero(special)[0]
-        factors = self._exist(self.special).astype(np.float64)
+        factors = self.exist(self.special).astype(np.float64)
         if surface == "volume" and len(self.special):
             volumes = np.zeros(lattice.shape)
             volumes[rows, columns] = volume
@@ -123,7 +123,7 @@ class Bonds:
         #: Factor of each bond of a special particle, shape (family size, special).
         self.factors: Array = factors
 
-    def _exist(self, particles: Indices) -> Mask:
+    def exist(self, particles: Indices) -> Mask:
         """Which neighbours the particles have, shape (family size, particles)."""
         rows, columns = (axis[particles] for axis in self.lattice.cells)
         dx, dy = self.family.offsets.T
@@ -144,7 +144,7 @@ class Bonds:
                 tip = (k == 0, k == len(crack.segments) - 1)
                 end = start + bonds[:, None, :]
                 cut = crosses(start, end, piece_start, piece_end, tip, lattice.spacing)
-                cut &= self._exist(near)
+                cut &= self.exist(near)
                 for column in np.nonzero(cut.any(axis=0))[0]:
                     p, found = int(near[column]), True
                     mine = cut[:, column]

@@ -172,3 +172,56 @@ def conductive_product(grid, segments, steps, blocks, bulk, diagonal, factors, o
                         f_ahead[fcol + j] * field[ahead + j]
                         + f_behind[fcol + j] * field[behind + j]
                     )
+
+
+@nb.njit(**_OPTIONS)
+def scatter(segments, values, grid):
+    """Write packed values (components, n) to the padded grid (components, cells)."""
+    for s in nb.prange(segments.shape[0]):
+        cell, size, first = segments[s, 0], segments[s, 1], segments[s, 2]
+        for c in range(grid.shape[0]):
+            row, packed = grid[c], values[c]
+            for j in range(size):
+                row[cell + j] = packed[first + j]
+
+
+@nb.njit(**_OPTIONS)
+def block_scale(segments, bulk, own, residual, out):
+    """Apply a block-diagonal matrix: one block for the bulk, own ones for the other particles.
+
+    Parameters
+    ----------
+    segments : uint64 (s, 6)
+    bulk : float64 (c, c)
+    own : float64 (c, c, d)
+    residual, out : float64 (c, n)
+    """
+    size_c = residual.shape[0]
+    for s in nb.prange(segments.shape[0]):
+        size, first = segments[s, 1], segments[s, 2]
+        kind, column = segments[s, 3], segments[s, 4]
+        for a in range(size_c):
+            target = out[a]
+            for j in range(size):
+                target[first + j] = 0.0
+            for b in range(size_c):
+                source = residual[b]
+                if kind == _U(0):
+                    entry = bulk[a, b]
+                    for j in range(size):
+                        target[first + j] += entry * source[first + j]
+                else:
+                    entries = own[a, b]
+                    for j in range(size):
+                        target[first + j] += entries[column + j] * source[first + j]
+
+
+@nb.njit(**_OPTIONS)
+def weighted_rows(pointer, index, weight, values, out):
+    """Sparse matrix (compressed rows) times each component: (c, columns) → (c, rows)."""
+    for row in nb.prange(pointer.size - 1):
+        for c in range(values.shape[0]):
+            total = 0.0
+            for k in range(pointer[row], pointer[row + 1]):
+                total += weight[k] * values[c, index[k]]
+            out[c, row] = total

@@ -87,7 +87,8 @@ class BondOperator(LinearOperator):
         self._steps = (dy * row + dx).astype(np.uint64)
         self._half_blocks = np.ascontiguousarray(self.blocks[:half])
         self._bulk = self._diagonal_sums(np.ones((bonds.family.size, 1)))[:, 0]
-        self._segments, self._diagonal = self._layout()
+        #: Runs of particles of one kind, as the kernels read them.
+        self.segments, self._diagonal = self._layout()
 
     def _layout(self) -> tuple[NDArray[np.uint64], Array]:
         """Segments of the active particles and the diagonal blocks that differ from the bulk's."""
@@ -97,11 +98,14 @@ class BondOperator(LinearOperator):
         kind[bonds.special] = _SPECIAL
         rows, columns = (axis[self.active] for axis in lattice.cells)
         kind = kind[self.active]
+        if self.fixed is not None:
+            # Their blocks differ for whoever inverts them.
+            kind[self.fixed.any(axis=0) & (kind == _BULK)] = _TRUNCATED
         own = kind != _BULK
         diagonal = np.empty((len(self._bulk), int(own.sum())))
         truncated = self.active[kind == _TRUNCATED]
         diagonal[:, kind[own] == _TRUNCATED] = self._diagonal_sums(
-            bonds._exist(truncated).astype(np.float64)
+            bonds.exist(truncated).astype(np.float64)
         )
         special = bonds.column[self.active]
         diagonal[:, kind[own] == _SPECIAL] = self._diagonal_sums(
@@ -137,26 +141,27 @@ class BondOperator(LinearOperator):
 
     # ---- products -----------------------------------------------------------------------
 
-    def scatter(self, x: Array) -> Array:
-        """Write a vector of the active unknowns to the (reused) padded grid; others are zero."""
-        values = x.reshape(self.components, -1)
-        if self.fixed is not None:
-            values = np.where(self.fixed, 0.0, values)
-        self._grid.fill(0.0)
-        self._grid[:, self._cells] = values
-        return self._grid
+    def product(self, values: Array, masked: bool = False) -> Array:
+        """K x for values of shape (components, active), in that shape.
 
-    @cached_property
-    def _cells(self) -> NDArray[np.int64]:
-        rows, columns = (axis[self.active] for axis in self.bonds.lattice.cells)
-        return rows * self.bonds.lattice.shape[1] + columns
+        With `masked`, prescribed components of the values and of the result count as zero
+        (instead of the identity rows of `matvec`).
+        """
+        values = np.ascontiguousarray(values, dtype=np.float64)
+        masked_values = values if self.fixed is None else np.where(self.fixed, 0.0, values)
+        # Only cells of active particles are ever written: the others stay zero.
+        kernels.scatter(self.segments, masked_values, self._grid)
+        out = self.apply_grid(self._grid)
+        if self.fixed is not None:
+            out[self.fixed] = 0.0 if masked else self.identity_scale * values[self.fixed]
+        return out
 
     def apply_grid(self, grid: Array) -> Array:
         """Rows of the active particles for a field on the padded grid, (components, active)."""
         out = np.empty((self.components, len(self.active)))
         self._kernel(
             grid,
-            self._segments,
+            self.segments,
             self._steps,
             self._half_blocks,
             self._bulk,
@@ -167,11 +172,7 @@ class BondOperator(LinearOperator):
         return out
 
     def _matvec(self, x: Array) -> Array:
-        x = np.asarray(x, dtype=np.float64)
-        out = self.apply_grid(self.scatter(x))
-        if self.fixed is not None:
-            out[self.fixed] = self.identity_scale * x.reshape(out.shape)[self.fixed]
-        return out.ravel()
+        return self.product(np.asarray(x).reshape(self.components, -1)).ravel()
 
     def _adjoint(self) -> BondOperator:
         return self
@@ -186,6 +187,12 @@ class BondOperator(LinearOperator):
             out[self.fixed] = 0.0
         return out
 
+    def with_moduli(self, moduli: Moduli) -> BondOperator:
+        """The operator of the same bonds and supports with other moduli."""
+        fixed = np.ones((self.components, self.bonds.lattice.count), dtype=bool)
+        fixed[:, self.active] = False if self.fixed is None else self.fixed
+        return BondOperator(self.bonds, moduli, fixed)
+
     # ---- structure ----------------------------------------------------------------------
 
     @property
@@ -196,27 +203,41 @@ class BondOperator(LinearOperator):
     @cached_property
     def block_diagonal(self) -> Array:
         """Diagonal blocks, shape (active, components, components)."""
-        entries = np.tile(self._bulk[:, None], len(self.active))
-        own = np.nonzero(self._kinds != _BULK)[0]
-        entries[:, own] = self._diagonal
-        c = self.components
-        blocks = np.empty((len(self.active), c, c))
-        if c == 1:
-            blocks[:, 0, 0] = entries[0]
-        else:
-            for k, (a, b) in enumerate([(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)]):
-                if b < c:
-                    blocks[:, a, b] = blocks[:, b, a] = entries[k]
+        blocks = np.tile(self.bulk_block, (len(self.active), 1, 1))
+        blocks[self.own] = self.own_blocks
+        return blocks
+
+    @property
+    def bulk_block(self) -> Array:
+        """Diagonal block of a bulk particle, shape (components, components)."""
+        return self._as_blocks(self._bulk[:, None])[0]
+
+    @cached_property
+    def own(self) -> NDArray[np.int64]:
+        """Positions among the active particles of those with a diagonal block of their own."""
+        kinds, sizes = self.segments[:, [3, 1]].astype(np.int64).T
+        return np.nonzero(np.repeat(kinds, sizes) != _BULK)[0]
+
+    @property
+    def own_blocks(self) -> Array:
+        """Their diagonal blocks, shape (len(own), components, components)."""
+        blocks = self._as_blocks(self._diagonal)
         if self.fixed is not None:
-            where, component = np.nonzero(self.fixed.T)
+            where, component = np.nonzero(self.fixed.T[self.own])
             blocks[where, component, :] = blocks[where, :, component] = 0.0
             blocks[where, component, component] = self.identity_scale
         return blocks
 
-    @cached_property
-    def _kinds(self) -> NDArray[np.int64]:
-        kinds, sizes = self._segments[:, [3, 1]].astype(np.int64).T
-        return np.repeat(kinds, sizes)
+    def _as_blocks(self, entries: Array) -> Array:
+        c = self.components
+        blocks = np.empty((entries.shape[1], c, c))
+        if c == 1:
+            blocks[:, 0, 0] = entries[0]
+            return blocks
+        for k, (a, b) in enumerate([(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)]):
+            if b < c:
+                blocks[:, a, b] = blocks[:, b, a] = entries[k]
+        return blocks
 
     @property
     def directed_bonds(self) -> int:
@@ -226,7 +247,7 @@ class BondOperator(LinearOperator):
     @property
     def nbytes(self) -> int:
         """Memory of what a product reads besides the fields."""
-        arrays = (self._segments, self._steps, self._half_blocks, self._bulk, self._diagonal)
+        arrays = (self.segments, self._steps, self._half_blocks, self._bulk, self._diagonal)
         return sum(a.nbytes for a in arrays) + self.bonds.nbytes
 
     def to_csr(self) -> sparse.csr_array:

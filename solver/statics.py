@@ -1,11 +1,12 @@
 """Static and steady solutions: the method follows the sign of the operator.
 
 positive, central (no rotations)
-    Conjugate gradients (SciPy) with a block-Jacobi preconditioner. A direction of non-positive
+    Conjugate gradients (SciPy) with the two-level preconditioner. A direction of non-positive
     energy, as a damaged body may have, ends the solve with a named error.
 indefinite (negative shear stiffness, positive condensed symbol)
-    A saddle in the rotations. Sparse factorisation for small bodies, MINRES with the absolute
-    value of the diagonal blocks for large ones.
+    A saddle in the rotations. Sparse factorisation for small bodies, MINRES with the two-level
+    preconditioner of a positive companion body for large ones (condensing the rotations would
+    need an inner solve in every product).
 
 BLAS reductions change in the last bits with its thread count, so BLAS is pinned to one thread
 here; the kernels themselves do not depend on theirs.
@@ -14,6 +15,7 @@ here; the kernels themselves do not depend on theirs.
 from __future__ import annotations
 
 from time import perf_counter
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,15 +23,20 @@ from scipy.sparse.linalg import LinearOperator, cg, minres, splu
 from threadpoolctl import threadpool_limits
 
 from .errors import ConvergenceError, NegativeCurvatureError
+from .micromoduli import ElasticModuli
 from .operators import BondOperator
+from .preconditioner import BlockJacobi, TwoLevel
 from .scene import Discretisation
 from .solution import Solution, Statistics
 
 Array = NDArray[np.float64]
+Preconditioner = Literal["auto", "two-level", "block-jacobi"]
 
 # Largest saddle point that is factorised; fill grows with the horizon, and beyond this MINRES
 # is faster and far smaller.
 _FACTORISE = 15_000
+# Below this many unknowns block Jacobi needs less time than the set-up of two levels.
+_TWO_LEVEL = 2_000
 # Krylov recurrences drift from the true residual: restarts from the current solution repair it.
 _RESTARTS = 6
 
@@ -53,42 +60,42 @@ class _Guarded(LinearOperator):
         return y
 
 
-def block_jacobi(operator: BondOperator, absolute: bool = False) -> LinearOperator:
-    """Inverse of the diagonal blocks, or of their absolute values (for MINRES).
+def companion(operator: BondOperator) -> BondOperator:
+    """The same body with every negative modulus turned positive.
+
+    Its symbol is equivalent to the absolute value of the indefinite one, wave by wave, so that a
+    preconditioner built on it leaves eigenvalues in two fixed intervals, whatever the spacing.
+    """
+    moduli = operator.moduli
+    assert isinstance(moduli, ElasticModuli)
+    positive = ElasticModuli(np.abs(moduli.normal), np.abs(moduli.shear))
+    return operator.with_moduli(positive)
+
+
+def preconditioner(operator: BondOperator, sign: str, choice: Preconditioner) -> LinearOperator:
+    """The preconditioner of a body: two-level, or block Jacobi where that is cheaper.
 
     Raises
     ------
-    NegativeCurvatureError
-        If a block is not positive definite and `absolute` is not asked for.
+    ValueError
+        If `choice` is unknown.
     """
-    values, vectors = np.linalg.eigh(operator.block_diagonal)
-    smallest = values[:, 0] / np.abs(values).max()
-    if not absolute and smallest.min() <= 1e-13:
-        particle = operator.active[np.argmin(smallest)]
-        x, y = operator.bonds.lattice.points[particle]
-        raise NegativeCurvatureError(
-            f"the particle at ({x:.4g}, {y:.4g}) is a mechanism: the stiffness of its own bonds "
-            f"is singular or negative (too few bonds are left). Hold it or remove it"
+    if choice not in get_args(Preconditioner):
+        raise ValueError(
+            f"unknown preconditioner {choice!r}; known: {', '.join(get_args(Preconditioner))}"
         )
-    values = np.abs(values)
-    # einsum keeps a fixed order of sums, whatever BLAS does.
-    inverse = np.einsum("pij,pj,pkj->ikp", vectors, 1.0 / values, vectors)
-    c = operator.components
-
-    def apply(x: Array) -> Array:
-        r = x.reshape(c, -1)
-        out = np.empty_like(r)
-        for i in range(c):
-            out[i] = inverse[i, 0] * r[0]
-            for k in range(1, c):
-                out[i] += inverse[i, k] * r[k]
-        return out.ravel()
-
-    return LinearOperator(operator.shape, matvec=apply, dtype=np.float64)
+    small = operator.shape[0] < _TWO_LEVEL
+    jacobi = choice == "block-jacobi" or (choice == "auto" and small)
+    if sign == "indefinite":
+        return BlockJacobi(operator, True) if jacobi else TwoLevel(companion(operator))
+    return BlockJacobi(operator) if jacobi else TwoLevel(operator)
 
 
 def solve(
-    discretisation: Discretisation, tolerance: float = 1e-10, max_iterations: int = 20_000
+    discretisation: Discretisation,
+    tolerance: float = 1e-10,
+    max_iterations: int = 20_000,
+    preconditioning: Preconditioner = "auto",
 ) -> Solution:
     """Solve K x = b for the free unknowns.
 
@@ -99,6 +106,8 @@ def solve(
         Stop at |b − K x| ≤ tolerance |b|, checked with the operator, not the recurrence.
     max_iterations : int
         Of the Krylov method, all restarts together.
+    preconditioning : {"auto", "two-level", "block-jacobi"}
+        ``auto`` takes two levels from 2,000 unknowns on.
 
     Returns
     -------
@@ -116,21 +125,22 @@ def solve(
     if not 0 < tolerance < 1:
         raise ValueError(f"the tolerance must lie between 0 and 1, not {tolerance}")
     begun = perf_counter()
-    operator = discretisation.operator
+    operator, sign = discretisation.operator, discretisation.stability.sign
     with threadpool_limits(limits=1, user_api="blas"):
         rhs = discretisation.right_hand_side()
-        ready = perf_counter()
+        x, iterations, ready = np.zeros_like(rhs), 0, perf_counter()
         if not rhs.any():
-            x, iterations, method = np.zeros_like(rhs), 0, "nothing to solve"
-        elif discretisation.stability.sign != "indefinite":
-            x, iterations = _conjugate_gradients(operator, rhs, tolerance, max_iterations)
-            method = "CG, block Jacobi"
-        elif operator.shape[0] <= _FACTORISE:
-            x, iterations = _factorise(operator, rhs, tolerance)
+            method = "nothing to solve"
+        elif sign == "indefinite" and operator.shape[0] <= _FACTORISE:
             method = "sparse LU"
+            x, iterations = _factorise(operator, rhs, tolerance)
         else:
-            x, iterations = _minres(operator, rhs, tolerance, max_iterations)
-            method = "MINRES, block Jacobi"
+            m = preconditioner(operator, sign, preconditioning)
+            ready = perf_counter()
+            krylov = _minres if sign == "indefinite" else _conjugate_gradients
+            name = "two-level" if isinstance(m, TwoLevel) else "block Jacobi"
+            method = f"{'MINRES' if sign == 'indefinite' else 'CG'}, {name}"
+            x, iterations = krylov(operator, m, rhs, tolerance, max_iterations)
         residual = _residual(operator, x, rhs)
     if not residual <= tolerance:
         raise ConvergenceError(
@@ -168,9 +178,9 @@ class _Counter:
 
 
 def _conjugate_gradients(
-    operator: BondOperator, rhs: Array, tolerance: float, limit: int
+    operator: BondOperator, m: LinearOperator, rhs: Array, tolerance: float, limit: int
 ) -> tuple[Array, int]:
-    guarded, preconditioner = _Guarded(operator), block_jacobi(operator)
+    guarded = _Guarded(operator)
     counter, x = _Counter(), np.zeros_like(rhs)
     for _ in range(_RESTARTS):
         # Solve for the correction: its residual is small, so nothing is lost to cancellation.
@@ -185,15 +195,16 @@ def _conjugate_gradients(
             rtol=0.5 * tolerance / size,
             atol=0.0,
             maxiter=left,
-            M=preconditioner,
+            M=m,
             callback=counter,
         )
         x = x + step
     return x, counter.count
 
 
-def _minres(operator: BondOperator, rhs: Array, tolerance: float, limit: int) -> tuple[Array, int]:
-    preconditioner = block_jacobi(operator, absolute=True)
+def _minres(
+    operator: BondOperator, m: LinearOperator, rhs: Array, tolerance: float, limit: int
+) -> tuple[Array, int]:
     counter, x = _Counter(), np.zeros_like(rhs)
     for _ in range(4 * _RESTARTS):
         defect = rhs - operator.matvec(x)
@@ -207,7 +218,7 @@ def _minres(operator: BondOperator, rhs: Array, tolerance: float, limit: int) ->
             defect,
             rtol=max(1e-3 * tolerance / size, 1e-12),
             maxiter=left,
-            M=preconditioner,
+            M=m,
             callback=counter,
         )
         x = x + step
