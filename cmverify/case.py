@@ -70,12 +70,21 @@ class FieldSet:
 
 @dataclass(frozen=True)
 class Curve:
-    """Computed values along a line, with the reference at the same abscissae, all (M,)."""
+    """Computed values along a line, (M,), beside the reference.
+
+    The reference is given at `reference_abscissa`, (K,), or at the same abscissae without one.
+    """
 
     label: str
     abscissa: Array
     computed: Array
     reference: Array
+    reference_abscissa: Array | None = None
+
+    def __post_init__(self) -> None:
+        where = self.abscissa if self.reference_abscissa is None else self.reference_abscissa
+        if len(self.abscissa) != len(self.computed) or len(where) != len(self.reference):
+            raise ValueError(f"curve {self.label!r}: abscissae and values differ in length")
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -116,13 +115,15 @@ def precision(
 
 
 @app.command()
-def errata() -> None:
+def errata(
+    every: Annotated[bool, typer.Option("--all", help="Show confirmed equations too.")] = False,
+) -> None:
     """List the printed equations that do not hold, and prove each correction."""
     from rich.console import Console
 
     from cmverify.errata import print_errata
 
-    raise typer.Exit(0 if print_errata(Console()) else 1)
+    raise typer.Exit(0 if print_errata(Console(), not every) else 1)
 
 
 @app.command()
@@ -219,7 +220,3 @@ def _refuse(message: str) -> None:
     """Print an error and leave with code 2."""
     typer.secho(f"error: {message}", fg=typer.colors.RED, err=True)
     raise typer.Exit(2)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -54,6 +55,7 @@ def write_arrays(
     mesh = meshio.Mesh(np.column_stack([points, np.zeros(count)]), cells, point_data=data)
     vtu, npz = base.with_suffix(".vtu"), base.with_suffix(".npz")
     mesh.write(vtu, file_format="vtu")
-    extra = {} if triangles is None else {"triangles": np.asarray(triangles)}
-    np.savez_compressed(npz, points=points, **extra, **arrays)
+    extra: dict[str, Any] = {} if triangles is None else {"triangles": np.asarray(triangles)}
+    extra |= arrays
+    np.savez_compressed(npz, points=points, **extra)
     return vtu, npz

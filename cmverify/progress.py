@@ -55,7 +55,7 @@ class LiveProgress:
     def listen(self, event: Event) -> None:
         """Show an event of the runner."""
         name, method, n = event.task
-        label = f"{name}  {method}  a/{n}"
+        label = f"{name}  {method}  1/{n}"
         if event.kind == "started":
             self._running[event.task] = self._bars.add_task(f"[dim]{label}", total=None)
             return

@@ -23,6 +23,7 @@ from cmverify.case import Curve, Field, FieldSet, LinePlot, Measurement
 from cmverify.verdict import Failed, Outcome
 
 FORMAT = 1
+CURVE = ("abscissa", "computed", "reference", "reference_abscissa")
 
 
 @dataclass(frozen=True)
@@ -81,7 +82,7 @@ def save(record: Record, folder: Path) -> Path:
     """Write a record atomically; returns the path of its .json."""
     base = stem(folder, record.case, record.method, record.resolution)
     base.parent.mkdir(parents=True, exist_ok=True)
-    arrays: dict[str, np.ndarray] = {}
+    arrays: dict[str, Any] = {}
     head = {f: getattr(record, f) for f in ("case", "method", "resolution", "threads")}
     data: dict[str, Any] = {
         "format": FORMAT,
@@ -181,13 +182,14 @@ def _describe(m: Measurement, arrays: dict[str, np.ndarray]) -> dict[str, Any]:
         entry = {k: getattr(line, k) for k in ("title", "xlabel", "ylabel", "over_resolutions")}
         data["lines"].append({**entry, "curves": [curve.label for curve in line.curves]})
         for j, curve in enumerate(line.curves):
-            for name in ("abscissa", "computed", "reference"):
-                arrays[f"line{i}_{j}_{name}"] = getattr(curve, name)
+            for name in CURVE:
+                if getattr(curve, name) is not None:
+                    arrays[f"line{i}_{j}_{name}"] = getattr(curve, name)
     return data
 
 
 def _restore(data: dict[str, Any], archive: Path) -> Measurement:
-    arrays: dict[str, np.ndarray] = {}
+    arrays: dict[str, Any] = {}
     if "fields" in data or data["lines"]:
         with np.load(archive) as content:
             arrays = {key: content[key] for key in content.files}
@@ -201,13 +203,12 @@ def _restore(data: dict[str, Any], archive: Path) -> Measurement:
         fields = FieldSet(arrays["points"], items, spacing, triangles)
     lines = []
     for i, entry in enumerate(data["lines"]):
-        names = ("abscissa", "computed", "reference")
-        curves = tuple(
-            Curve(label, *(arrays[f"line{i}_{j}_{name}"] for name in names))
-            for j, label in enumerate(entry["curves"])
-        )
+        curves = []
+        for j, label in enumerate(entry["curves"]):
+            given: dict[str, Any] = {name: arrays.get(f"line{i}_{j}_{name}") for name in CURVE}
+            curves.append(Curve(label, **given))
         head = (entry["title"], entry["xlabel"], entry["ylabel"])
-        lines.append(LinePlot(*head, curves, entry["over_resolutions"]))
+        lines.append(LinePlot(*head, tuple(curves), entry["over_resolutions"]))
     return Measurement(
         unknowns=data["unknowns"],
         quantities={k: float(v) for k, v in data["quantities"].items()},

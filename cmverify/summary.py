@@ -108,7 +108,7 @@ def table(result: CaseResult) -> list[Row]:
             if isinstance(outcome, Failed):
                 rows.append(Row(name, kind, n, None, {}, {}, {}, math.nan, {}, outcome))
                 continue
-            orders = _orders(coarser, (n, outcome)) if coarser else {}
+            orders = _orders(coarser, (n, outcome)) if coarser and result.case.timed else {}
             rows.append(
                 Row(
                     name, kind, n, outcome.unknowns, dict(outcome.quantities), orders,

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -31,8 +31,12 @@ from cmverify.case import (
 )
 from cmverify.norms import relative_l2
 
+if TYPE_CHECKING:
+    from solver.micromoduli import Calibration
+
 CONDUCTIVITY = ((5.0, 2.0), (2.0, 1.0))  # Eq. 168, W/(m K)
 EXPONENT = 34  # of the cos^n law, as in the paper
+CALIBRATIONS: tuple[Calibration, ...] = ("lattice", "positive", "continuum")
 SOURCE = "issue A, what must hold"
 LADDER = {Level.QUICK: (25, 50), Level.STANDARD: (25, 50, 75), Level.PAPER: (25, 50, 100)}
 
@@ -54,7 +58,7 @@ class Problem:
         return np.asarray(self.exact().source(x, y))
 
 
-def bond(problem: Problem, calibration: str, n: int) -> Measurement:
+def bond(problem: Problem, calibration: Calibration, n: int) -> Measurement:
     """Solve with the bond solver at spacing a/n and compare with the closed form."""
     from solver import ConductivityTensor, Load, Scene, Support, disc, recovery
     from solver.laws import Cosine
@@ -151,7 +155,7 @@ def fem(problem: Problem, order: int, n: int) -> Measurement:
     )
 
 
-def _warm_bond(calibration: str) -> None:
+def _warm_bond(calibration: Calibration) -> None:
     from references.analytic.conduction import disc_cubic_printed
 
     bond(Problem(disc_cubic_printed, heated=True), calibration, 16)
@@ -164,7 +168,7 @@ def _warm_fem(order: int) -> None:
 
 
 WARM = {
-    **{f"bond/{c}": partial(_warm_bond, c) for c in ("lattice", "positive", "continuum")},
+    **{f"bond/{c}": partial(_warm_bond, c) for c in CALIBRATIONS},
     **{f"fem/P{p}": partial(_warm_fem, p) for p in (1, 2)},
 }
 
@@ -185,7 +189,7 @@ def methods(problem: Problem) -> tuple[Method, ...]:
     """Three calibrations of the bond solver, linear and quadratic finite elements."""
     bonds = [
         Method(f"bond/{c}", "bond", partial(bond, problem, c), LADDER, WARM[f"bond/{c}"])
-        for c in ("lattice", "positive", "continuum")
+        for c in CALIBRATIONS
     ]
     elements = [
         Method(f"fem/P{p}", "fem", partial(fem, problem, p), LADDER, WARM[f"fem/P{p}"])

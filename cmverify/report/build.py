@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from cmverify import precision
 from cmverify.case import Measurement
 from cmverify.results import write_text
-from cmverify.summary import CaseResult, RunInfo, all_passed, table
+from cmverify.summary import CaseResult, Row, RunInfo, all_passed, table
 from cmverify.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -76,8 +76,19 @@ def _section(result: CaseResult, folder: Path) -> dict[str, Any]:
         "comparison": _comparison(result, points),
         "downloads": _export(result, folder),
         "command": level_command,
+        "solvers": _solvers(rows),
         "timed": any(not math.isnan(row.total) and row.total > 0 for row in rows),
     }
+
+
+def _solvers(rows: Sequence[Row]) -> str:
+    """Which linear solvers each kind of method used, in words."""
+    used: dict[str, list[str]] = {}
+    for row in rows:
+        name = row.statistics.get("method")
+        if name and name not in used.setdefault(row.kind, []):
+            used[row.kind].append(str(name))
+    return "; ".join(f"{' and '.join(names)} ({kind})" for kind, names in used.items())
 
 
 def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture]:

@@ -20,7 +20,7 @@ _KNOWN = {
     "fem/P2 graded": (SKY, ">"),
 }
 
-RC: dict[str, Any] = {
+RC: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 10.0,
     "axes.titlesize": 10.5,
@@ -38,7 +38,11 @@ RC: dict[str, Any] = {
     "figure.facecolor": "white",
     "svg.fonttype": "path",
     "svg.hashsalt": "cmverify",
-    "figure.constrained_layout.use": True,
+    "figure.subplot.left": 0.135,
+    "figure.subplot.right": 0.975,
+    "figure.subplot.bottom": 0.135,
+    "figure.subplot.top": 0.915,
+    "axes.formatter.useoffset": False,
 }
 
 

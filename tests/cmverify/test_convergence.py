@@ -71,5 +71,5 @@ def test_grid_convergence_index_is_the_safety_factor_times_the_true_error():
 
 @pytest.mark.parametrize("h", [[0.1, 0.2], [0.2, 0.2], [0.2, -0.1], [0.2]])
 def test_bad_grids_are_refused(h):
-    with pytest.raises(ValueError, match="grid sizes|equal vectors"):
+    with pytest.raises(ValueError, match=r"grid sizes|equal vectors"):
         observed_orders(h, [1.0, 2.0])

@@ -1,0 +1,114 @@
+"""The command line: exit codes, messages, and a quick --help."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+from typer.testing import CliRunner
+
+from cmverify import environment, results, runner
+from cmverify.cases import registry
+from cmverify.cli import app
+from cmverify.doctor import examine
+from tests.cmverify import toy_registry
+
+cli = CliRunner()
+
+
+@pytest.fixture
+def toys(monkeypatch):
+    """Let the command line see toy cases only."""
+    cases = toy_registry.CASES
+    monkeypatch.setattr(registry, "all_cases", lambda: tuple(cases.values()))
+    original = runner.run
+
+    def run(*args, **kwargs):
+        return original(*args, registry=toy_registry.__name__, **kwargs)
+
+    monkeypatch.setattr(runner, "run", run)
+
+
+def test_run_writes_everything_and_succeeds(toys, tmp_path):
+    out, numbers = tmp_path / "out", tmp_path / "numbers.json"
+    given = ["run", "toy", "--out", str(out), "--json", str(numbers), "--jobs", "1"]
+    found = cli.invoke(app, given)
+    assert found.exit_code == 0, found.output
+    assert "All 4 checks hold" in found.output
+    assert (out / "index.html").is_file()
+    assert json.loads(numbers.read_text())["passed"] is True
+    assert list((out / "fields").glob("*.vtu"))
+    again = cli.invoke(app, ["report", "--out", str(out)])
+    assert again.exit_code == 0, again.output
+    shown = cli.invoke(app, ["precision", "--out", str(out)])
+    assert shown.exit_code == 0, shown.output
+    assert "bond/trapezium" in shown.output
+    resumed = cli.invoke(app, [*given, "--resume"])
+    assert resumed.output.count("reused") == 2
+
+
+def test_one_failure_is_exit_code_one(toys, tmp_path):
+    found = cli.invoke(app, ["run", "toys", "--out", str(tmp_path), "--jobs", "2"])
+    assert found.exit_code == 1
+    assert "no luck at 10" in found.output
+    assert "exit code 7" in found.output
+    assert (tmp_path / "index.html").is_file()
+
+
+def test_wrong_names_and_empty_folders_are_refused(tmp_path):
+    found = cli.invoke(app, ["run", "disk-cubic", "--out", str(tmp_path)])
+    assert found.exit_code == 2
+    assert "did you mean disc-cubic" in found.output
+    found = cli.invoke(app, ["report", "--out", str(tmp_path)])
+    assert found.exit_code == 2
+    assert "holds no finished run" in found.output
+
+
+def test_solve_writes_fields_and_names_a_wrong_key(tmp_path):
+    from tests.cmverify.test_scene_file import SMALL
+
+    scene = tmp_path / "scene.toml"
+    scene.write_text(SMALL)
+    found = cli.invoke(app, ["solve", str(scene)])
+    assert found.exit_code == 0, found.output
+    assert scene.with_suffix(".vtu").is_file()
+    assert scene.with_suffix(".npz").is_file()
+    scene.write_text(SMALL.replace("radius", "raduis"))
+    found = cli.invoke(app, ["solve", str(scene)])
+    assert found.exit_code == 2
+    assert "scene.toml:7" in found.output
+
+
+def test_list_names_every_case():
+    found = cli.invoke(app, ["list"], terminal_width=200)
+    assert found.exit_code == 0
+    assert all(case.name[:8] in found.output for case in registry.all_cases())
+
+
+def test_help_and_list_import_nothing_heavy():
+    code = (
+        "import sys, cmverify.cli, cmverify.cases.registry as r; r.all_cases();"
+        "heavy = {'numba', 'scipy', 'matplotlib', 'skfem', 'gmsh', 'sympy'} & set(sys.modules);"
+        "assert not heavy, heavy"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_doctor_names_what_is_missing(monkeypatch):
+    monkeypatch.setattr(environment, "missing_gmsh_libraries", lambda: {"libX.so": "libx-deb"})
+    monkeypatch.setenv("CMVERIFY_FENICSX_PYTHON", "/nowhere/python")
+    monkeypatch.setattr(environment, "_writable", lambda folder: False)
+    findings = {f.subject: f for f in examine()}
+    assert "apt-get install libx-deb" in findings["gmsh libraries"].detail
+    assert findings["Numba cache"].state == "problem"
+    assert findings["numpy"].state == "ok"
+    assert findings["FEniCSx"].state in ("ok", "note")
+
+
+def test_doctor_exits_with_one_if_something_is_missing(monkeypatch):
+    monkeypatch.setattr(environment, "missing_gmsh_libraries", lambda: {"libX.so": "libx-deb"})
+    assert cli.invoke(app, ["doctor"]).exit_code == 1
+
+
+def test_the_fingerprint_is_of_the_sources():
+    assert len(results.source_fingerprint()) == 16
