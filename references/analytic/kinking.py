@@ -158,4 +158,4 @@ def hoop_kink_angle(voigt: ArrayLike, KI: float, KII: float) -> float:
     found = hoop_maxima(voigt, KI, KII)
     if not found:
         raise ValueError("no direction from the tip is in tension: the crack is closed")
-    return found[0].angle
+    return found[0].angle + 0.0  # turns -0.0 into 0.0

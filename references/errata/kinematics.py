@@ -99,6 +99,24 @@ def _assembled_stiffness() -> None:
     differs(half - unordered, "one ordered pair alone carries half the stiffness")
 
 
+def _mass_of_a_particle() -> None:
+    # A square of 12x12 unit cells of unit density: twice its kinetic energy at unit speed is its
+    # area.  m = 5, offsets within m + 1/2 cells (Sect. 2.1).
+    side = range(12)
+    cells = {(i, j) for i in side for j in side}
+    offsets = [
+        (i, j)
+        for i in range(-5, 6)
+        for j in range(-5, 6)
+        if (i, j) != (0, 0) and i * i + j * j < 5.5**2
+    ]
+    families = {p: sum((p[0] + i, p[1] + j) in cells for i, j in offsets) for p in cells}
+    by_particle, by_pair = len(families), sum(families.values())
+    require(by_particle == len(side) ** 2, "summed over particles, Eq. 30, the mass is the body's")
+    require(by_pair > 50 * by_particle, "summed over pairs, Eq. 36, it is not")
+    require(max(families.values()) == 96, "a full family at m = 5")
+
+
 def _rotational_inertia() -> None:
     dx, rho, rate, x, y = sp.symbols("dx rho Omega x y", positive=True)
     cell = (x, -dx / 2, dx / 2), (y, -dx / 2, dx / 2)
@@ -157,6 +175,15 @@ ENTRIES = [
         "wrong",
         "natural frequencies depend on the unit of length as printed; Eq. 14 has the same term",
         _rotational_inertia,
+    ),
+    Entry(
+        "36",
+        "assembled mass and load (also Eqs. 38, 131, 133)",
+        "M = assembly over all pairs (p, q) of P_p dv_p",
+        "M = assembly over particles p of P_p dv_p, as Eqs. 30 and 32 sum",
+        "wrong",
+        "read literally a particle's mass counts once for each neighbour: 96 times at m = 5",
+        _mass_of_a_particle,
     ),
     Entry(
         "37",
