@@ -1,0 +1,1 @@
+"""asv's benchmarks: the same `Case` objects and the kernel, tracked over the project's history."""

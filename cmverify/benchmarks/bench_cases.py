@@ -1,0 +1,59 @@
+"""Time, peak memory and error of the suite's cases at the quick level's finest spacing."""
+
+from __future__ import annotations
+
+import math
+
+from cmverify.case import Level, Measurement
+from cmverify.cases import registry
+from cmverify.worker import measure, warm_up
+
+CASES = ["disc-cubic", "disc-exponential", "crack-tip-I", "crack-tip-II"]
+METHODS = ["bond/lattice", "bond/positive", "fem/P2"]
+
+
+class Cases:
+    """Any (case, method): compiled in `setup`, so that no benchmark measures the compiler.
+
+    An exception of the method fails the benchmark; so does a figure that is not a number.
+    """
+
+    params = (CASES, METHODS)
+    param_names = ("case", "method")
+    timeout = 300.0
+    warmup_time = 0.0
+
+    def setup(self, case: str, method: str) -> None:
+        """Look the case up and compile."""
+        self.case = registry.get(case)
+        self.method = self.case.method(method)
+        self.resolution = self.method.resolutions[Level.QUICK][-1]
+        warm_up(self.method)
+
+    def time_case(self, case: str, method: str) -> None:
+        """The whole measurement: set-up, solve, recovery, norms."""
+        self.method.run(self.resolution)
+
+    def peakmem_case(self, case: str, method: str) -> None:
+        """Peak resident memory of the process."""
+        self.method.run(self.resolution)
+
+    def track_solve(self, case: str, method: str) -> float:
+        """Set-up and solve alone, as the report plots them; the best of three."""
+        return min(_finite(self._measure().total_seconds) for _ in range(3))
+
+    def track_error(self, case: str, method: str) -> float:
+        """The case's primary error."""
+        return _finite(self._measure().quantities[self.case.primary])
+
+    def _measure(self) -> Measurement:
+        return measure(self.method, self.resolution)
+
+    track_solve.unit = "seconds"  # type: ignore[attr-defined]
+    track_error.unit = "relative L2 error"  # type: ignore[attr-defined]
+
+
+def _finite(value: float) -> float:
+    if not math.isfinite(value):
+        raise ArithmeticError(f"the measured figure is {value}")
+    return value
