@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
-import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -54,43 +52,26 @@ def _cache() -> Finding:
 
 
 def _gmsh() -> Finding:
-    missing = environment.missing_gmsh_libraries()
-    if missing:
-        packages = " ".join(missing.values())
-        detail = f"missing {', '.join(missing)}; on Debian: apt-get install {packages}"
-        return Finding("problem", "gmsh libraries", detail)
+    from references.fem.mesh import MeshingUnavailableError, load_gmsh, missing_libraries
+
+    missing = missing_libraries()
     try:
-        import gmsh
-    except (ImportError, OSError) as error:
-        return Finding("problem", "gmsh", f"cannot be loaded: {error}")
-    return Finding("ok", "gmsh libraries", f"all found; gmsh {gmsh.__version__} loads")
+        gmsh = load_gmsh()
+    except MeshingUnavailableError as error:
+        return Finding("problem", "gmsh", str(error))
+    if missing:  # it loads all the same, so another copy was found
+        detail = f"gmsh {gmsh.__version__} loads; not found by name: {', '.join(missing)}"
+        return Finding("note", "gmsh", detail)
+    return Finding("ok", "gmsh", f"{gmsh.__version__} loads, all system libraries found")
 
 
 def _fenicsx() -> Finding:
-    """Look for dolfinx the way the cross-check does: named, this, or the system's interpreter."""
-    probe = (
-        "import importlib.util as u\n"
-        "if u.find_spec('dolfinx_solver'):\n import dolfinx_solver\n"
-        "import dolfinx; print(dolfinx.__version__)"
-    )
-    named = os.environ.get("CMVERIFY_FENICSX_PYTHON")
-    candidates = [named, sys.executable, "/usr/bin/python3"]
-    clean = {"PYTHONPATH", "PYTHONHOME", "VIRTUAL_ENV", "LD_LIBRARY_PATH"}
-    outside = {k: v for k, v in os.environ.items() if k not in clean}
-    for python in filter(None, candidates):
-        if shutil.which(python) is None:
-            continue
-        try:
-            found = subprocess.run(
-                [python, "-c", probe], capture_output=True, text=True, timeout=120, env=outside
-            )
-        except (OSError, subprocess.TimeoutExpired):
-            continue
-        if found.returncode == 0:
-            return Finding("ok", "FEniCSx", f"dolfinx {found.stdout.strip()} in {python}")
-    detail = (
-        "not found: its cross-check is skipped. Install with: pip install 'cmverify[fenicsx]' "
-        "(Python 3.12 or later), or apt-get install python3-dolfinx, or point "
-        "CMVERIFY_FENICSX_PYTHON at an interpreter that has it"
-    )
-    return Finding("note", "FEniCSx", detail)
+    from references.fenicsx import bridge
+
+    try:
+        found = bridge.find()
+    except bridge.FenicsxError as error:
+        return Finding("problem", "FEniCSx", str(error))
+    if found is None:
+        return Finding("note", "FEniCSx", f"the cross-check is skipped. {bridge.INSTALL}")
+    return Finding("ok", "FEniCSx", str(found))

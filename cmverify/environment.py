@@ -1,12 +1,10 @@
-"""What a figure depends on besides the code: versions, machine, threads, system libraries."""
+"""What a figure depends on besides the code: versions, machine, threads."""
 
 from __future__ import annotations
 
-import ctypes
 import os
 import platform
 import subprocess
-import sys
 from dataclasses import asdict, dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -18,20 +16,6 @@ LIBRARIES = (
     "cmverify", "numpy", "scipy", "numba", "llvmlite", "scikit-fem", "gmsh", "shapely", "meshio",
     "matplotlib",
 )  # fmt: skip
-
-#: Shared libraries that the gmsh wheel loads but does not carry, with Debian's package names.
-GMSH_LIBRARIES = {
-    "libGLU.so.1": "libglu1-mesa",
-    "libGL.so.1": "libgl1",
-    "libXrender.so.1": "libxrender1",
-    "libXcursor.so.1": "libxcursor1",
-    "libXfixes.so.3": "libxfixes3",
-    "libXft.so.2": "libxft2",
-    "libfontconfig.so.1": "libfontconfig1",
-    "libXinerama.so.1": "libxinerama1",
-    "libX11.so.6": "libx11-6",
-    "libXext.so.6": "libxext6",
-}
 
 
 @dataclass(frozen=True)
@@ -64,19 +48,6 @@ def describe() -> Environment:
         versions={name: _version(name) for name in LIBRARIES},
         commit=_commit(),
     )
-
-
-def missing_gmsh_libraries() -> dict[str, str]:
-    """Shared libraries that gmsh needs and the loader does not find: file name -> package."""
-    if not sys.platform.startswith("linux"):
-        return {}
-    missing = {}
-    for name, package in GMSH_LIBRARIES.items():
-        try:
-            ctypes.CDLL(name)
-        except OSError:
-            missing[name] = package
-    return missing
 
 
 def numba_cache() -> tuple[Path, bool]:
