@@ -9,6 +9,7 @@ from .errors import (
     CalibrationError,
     ConvergenceError,
     InadmissibleMaterialError,
+    MechanismError,
     NegativeCurvatureError,
     SceneError,
 )
@@ -33,6 +34,7 @@ __all__ = [
     "InadmissibleMaterialError",
     "Influence",
     "Load",
+    "MechanismError",
     "NegativeCurvatureError",
     "Region",
     "Scene",

@@ -70,11 +70,14 @@ class Bonds:
     surface : {"none", "volume"}
     prescribed : ndarray of bool, shape (N,)
         Particles that are wholly prescribed: the body's edge is no surface for them.
+    broken : ndarray of bool, shape (family size / 2, N), optional
+        Bonds, by half offset and particle of origin, that carry nothing. Unlike a crack that was
+        always there they make no surface: the bonds that are left are not stiffened.
 
     Raises
     ------
     SceneError
-        If a crack lies outside the body.
+        If a crack lies outside the body, or `broken` has the wrong shape.
     """
 
     def __init__(
@@ -84,6 +87,7 @@ class Bonds:
         cracks: Sequence[Crack] = (),
         surface: Surface = "none",
         prescribed: Mask | None = None,
+        broken: Mask | None = None,
     ) -> None:
         self.lattice, self.family, self.surface = lattice, family, surface
         rows, columns = lattice.cells
@@ -95,8 +99,11 @@ class Bonds:
         self.short: Indices = near[~self.exist(near).all(axis=0)]
         cut_at, cut = self._cut_bonds(cracks)
 
+        broken_at, broken_there = self._both_ends(broken)
+
         special = np.zeros(lattice.count, dtype=bool)
         special[cut_at] = True
+        special[broken_at] = True
         if surface == "volume":
             volume = np.full(lattice.count, full_volume(family))
             physical = self.short[free[self.short]]
@@ -120,6 +127,8 @@ class Bonds:
                 factors[o] *= volume_factor(family, here, there)
         if len(cut_at):
             factors[:, np.searchsorted(self.special, cut_at)] *= ~cut
+        if len(broken_at):
+            factors[:, np.searchsorted(self.special, broken_at)] *= ~broken_there
         #: Factor of each bond of a special particle, shape (family size, special).
         self.factors: Array = factors
 
@@ -128,6 +137,27 @@ class Bonds:
         rows, columns = (axis[particles] for axis in self.lattice.cells)
         dx, dy = self.family.offsets.T
         return self.lattice.mask[rows + dy[:, None], columns + dx[:, None]]
+
+    def _both_ends(self, broken: Mask | None) -> tuple[Indices, Mask]:
+        """Particles with broken bonds and which, from the half offsets of one end."""
+        half = self.family.size // 2
+        if broken is None:
+            return np.zeros(0, dtype=np.int64), np.zeros((self.family.size, 0), dtype=bool)
+        if broken.shape != (half, self.lattice.count) or broken.dtype != bool:
+            raise SceneError(
+                f"broken bonds are given as booleans of shape {(half, self.lattice.count)} "
+                f"(half offsets × particles), not {broken.dtype} {broken.shape}"
+            )
+        rows, columns = self.lattice.cells
+        number = self.lattice.number()
+        whole = np.zeros((2 * half, self.lattice.count), dtype=bool)
+        for o, (dx, dy) in enumerate(self.family.offsets[:half]):
+            neighbour = number[rows + dy, columns + dx]
+            start = np.nonzero(broken[o] & (neighbour >= 0))[0]
+            whole[o, start] = True
+            whole[o + half, neighbour[start]] = True
+        particles = np.nonzero(whole.any(axis=0))[0]
+        return particles, whole[:, particles]
 
     def _cut_bonds(self, cracks: Sequence[Crack]) -> tuple[Indices, Mask]:
         """Particles with cut bonds and which of their bonds are cut."""

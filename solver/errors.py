@@ -19,3 +19,7 @@ class NegativeCurvatureError(RuntimeError):
 
 class ConvergenceError(RuntimeError):
     """An iterative solver stopped before it reached the tolerance asked for."""
+
+
+class MechanismError(SceneError):
+    """A part of the body can move without straining a bond."""

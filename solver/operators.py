@@ -181,7 +181,8 @@ class BondOperator(LinearOperator):
         """K_fp u_p: rows of the active particles for prescribed values of shape (components, N)."""
         grid = np.zeros_like(self._grid)
         rows, columns = self.bonds.lattice.cells
-        grid[:, rows * self.bonds.lattice.shape[1] + columns] = prescribed
+        # Parts set aside hold NaN and no bonds.
+        grid[:, rows * self.bonds.lattice.shape[1] + columns] = np.nan_to_num(prescribed)
         out = self.apply_grid(grid)
         if self.fixed is not None:
             out[self.fixed] = 0.0

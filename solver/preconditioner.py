@@ -102,6 +102,8 @@ class TwoLevel(LinearOperator):
         coarse matrix would exceed 60,000 unknowns.
     degree : int
         Chebyshev degree, products a sweep; one V-cycle costs 2 × degree products.
+    regularisation : float
+        Relative shift of the coarse diagonal.
 
     Raises
     ------
@@ -109,7 +111,13 @@ class TwoLevel(LinearOperator):
         If a particle's own stiffness is not positive definite.
     """
 
-    def __init__(self, operator: BondOperator, cells: int | None = None, degree: int = 2) -> None:
+    def __init__(
+        self,
+        operator: BondOperator,
+        cells: int | None = None,
+        degree: int = 2,
+        regularisation: float = _REGULARISATION,
+    ) -> None:
         super().__init__(operator.dtype, operator.shape)
         begun = perf_counter()
         self.operator, self.degree = operator, int(degree)
@@ -118,7 +126,7 @@ class TwoLevel(LinearOperator):
             largest = np.sqrt(operator.shape[0] / _LARGEST_COARSE)
             cells = max(_CELLS, int(np.ceil(largest)))
         self.hats = Hats(operator, cells)
-        self._solve = _factorise(self.hats.galerkin())
+        self._solve = _factorise(self.hats.galerkin(), regularisation)
         self.largest = self._largest_eigenvalue()
         #: Wall time of the set-up, s.
         self.seconds = perf_counter() - begun
@@ -155,7 +163,7 @@ class TwoLevel(LinearOperator):
         return x
 
     def _matvec(self, residual: Array) -> Array:
-        residual = np.asarray(residual, dtype=np.float64)
+        residual = np.asarray(residual, dtype=np.float64).ravel()
         c = self.operator.components
         x = self._smooth(residual)
         left = (residual - self.operator.matvec(x)).reshape(c, -1)
@@ -173,11 +181,10 @@ class TwoLevel(LinearOperator):
         return self
 
 
-def _factorise(matrix: sparse.csc_array):  # type: ignore[no-untyped-def]
+def _factorise(matrix: sparse.csc_array, regularisation: float):  # type: ignore[no-untyped-def]
     """Solver of the coarse matrix."""
-    diagonal = matrix.diagonal()
-    floor = _REGULARISATION * np.abs(diagonal).max()
-    shift = np.maximum(_REGULARISATION * np.abs(diagonal), floor)
+    diagonal = np.abs(matrix.diagonal())
+    shift = regularisation * np.maximum(diagonal, diagonal.max())
     factors = splu(
         (matrix + sparse.diags_array(shift)).tocsc(),
         permc_spec="MMD_AT_PLUS_A",

@@ -12,7 +12,6 @@ from scipy import ndimage, sparse
 from scipy.sparse.csgraph import connected_components
 
 from .bonds import Bonds
-from .errors import SceneError
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -53,8 +52,8 @@ def parts(bonds: Bonds) -> tuple[int, NDArray[np.int32]]:
     return count, labels
 
 
-def check_held(bonds: Bonds, prescribed: Mask, elastic: bool) -> None:
-    """Refuse a body of which a part can move rigidly (or float at any temperature).
+def unheld(bonds: Bonds, prescribed: Mask, elastic: bool) -> list[tuple[Mask, str]]:
+    """Parts that can move rigidly (or float at any temperature).
 
     Parameters
     ----------
@@ -62,14 +61,16 @@ def check_held(bonds: Bonds, prescribed: Mask, elastic: bool) -> None:
     prescribed : ndarray of bool, shape (components, N)
     elastic : bool
 
-    Raises
-    ------
-    SceneError
-        Naming the motions left free and where the part is.
+    Returns
+    -------
+    list of (members, shape (N,); sentence that names the free motions and where the part is)
     """
     count, labels = parts(bonds)
     points = bonds.lattice.points
-    for part in range(count):
+    # Parts that are wholly prescribed (or already set aside) have no unknowns to be free.
+    active = ~prescribed.all(axis=0)
+    found: list[tuple[Mask, str]] = []
+    for part in np.unique(labels[active]):
         members = labels == part
         held = prescribed[:, members]
         where = points[members].mean(axis=0)
@@ -77,25 +78,39 @@ def check_held(bonds: Bonds, prescribed: Mask, elastic: bool) -> None:
         size = f"{int(members.sum())} particles"
         if not elastic:
             if not held.any():
-                raise SceneError(
-                    f"no temperature is prescribed on {place} ({size}): its level is undetermined"
+                found.append(
+                    (
+                        members,
+                        f"no temperature is prescribed on {place} ({size}): its level is "
+                        f"undetermined",
+                    )
                 )
             continue
-        x, y = ((points[members] - where) / bonds.lattice.spacing).T
-        motions = np.zeros((3, *held.shape))
-        motions[0, 0] = motions[1, 1] = 1.0
-        motions[2, 0], motions[2, 1] = -y, x
-        if held.shape[0] == 3:
-            motions[2, 2] = 1.0
-        motions /= np.linalg.norm(motions.reshape(3, -1), axis=1)[:, None, None]
-        seen = motions[:, held]
-        size_squared, free = np.linalg.eigh(np.einsum("ai,bi->ab", seen, seen))
-        loose_modes = size_squared <= _RANK * max(size_squared.max(), 1e-300)
-        if loose_modes.any():
-            names = ("translation along 1", "translation along 2", "rotation")
-            loose = np.abs(free[:, loose_modes]).max(axis=1)
-            named = ", ".join(n for n, size_ in zip(names, loose, strict=True) if size_ > 1e-3)
-            raise SceneError(
-                f"the supports leave a rigid motion of {place} ({size}) free ({named}): "
-                f"statics has no unique solution"
+        loose = _free_motions(points[members] - where, held)
+        if loose:
+            found.append(
+                (
+                    members,
+                    f"a rigid motion of {place} ({size}) is left free ({loose}): statics "
+                    f"has no unique solution",
+                )
             )
+    return found
+
+
+def _free_motions(positions: Array, held: Mask) -> str:
+    """Names of the rigid motions that the prescribed unknowns `held` (components, n) allow."""
+    size = np.abs(positions).max(initial=0.0) or 1.0
+    x, y = (positions / size).T
+    motions = np.zeros((3, *held.shape))
+    motions[0, 0] = motions[1, 1] = 1.0
+    motions[2, 0], motions[2, 1] = -y, x
+    if held.shape[0] == 3:
+        motions[2, 2] = 1.0
+    motions /= np.linalg.norm(motions.reshape(3, -1), axis=1)[:, None, None]
+    seen = motions[:, held]
+    squares, modes = np.linalg.eigh(np.einsum("ai,bi->ab", seen, seen))
+    free = squares <= _RANK * max(squares.max(), 1e-300)
+    loose = np.abs(modes[:, free]).max(axis=1, initial=0.0)
+    names = ("translation along 1", "translation along 2", "rotation")
+    return ", ".join(n for n, s in zip(names, loose, strict=True) if s > 1e-3)

@@ -6,14 +6,15 @@ checked there, before anything long begins), and the analyses work on that `Disc
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from . import mechanisms
 from .bonds import Bonds
 from .conditions import Load, Support, evaluate
 from .errors import SceneError
@@ -24,7 +25,6 @@ from .laws import AngularLaw
 from .micromoduli import Calibration, Moduli, calibrate
 from .operators import BondOperator
 from .regions import Crack, Region
-from .rigid import check_held
 from .stability import Stability, require_admissible
 from .surface import Surface, check_surface
 from .tensors import ElasticTensor, Material
@@ -60,7 +60,13 @@ class Scene:
     area_rule : {"partial", "full", "exact"}
     surface : {"volume", "none"}
     cracks : sequence of Crack
-        Bonds that meet one are cut.
+        Bonds that cross one are cut, and its faces are surfaces.
+    broken : callable, optional
+        ``broken(lattice, family)`` → booleans of shape (family size / 2, N): bonds, by half
+        offset and particle of origin, that carry nothing (damage).
+    loose : {"refuse", "drop"}
+        What to do with parts and particles that nothing holds: refuse the scene, or set them
+        aside (their fields are NaN, the rest is solved).
 
     Raises
     ------
@@ -90,9 +96,13 @@ class Scene:
     area_rule: AreaRule = "partial"
     surface: Surface = "volume"
     cracks: Sequence[Crack] = ()
+    broken: Callable[[Lattice, Family], Mask] | None = None
+    loose: Literal["refuse", "drop"] = "refuse"
 
     def __post_init__(self) -> None:
         check_surface(self.surface)
+        if self.loose not in ("refuse", "drop"):
+            raise SceneError(f"loose must be 'refuse' or 'drop', not {self.loose!r}")
         if not isinstance(self.region, Region):
             raise SceneError(f"region must be a Region, not {type(self.region).__name__}")
         wanted = {"force", "couple"} if self.elastic else {"source"}
@@ -168,11 +178,30 @@ class Discretisation:
             components = 2 if stability.sign == "central" else 3
         prescribed, values = _supports(scene, lattice, components)
         load = _loads(scene, lattice, components)
-        bonds = Bonds(
-            lattice, family, scene.cracks, scene.surface, np.logical_and.reduce(prescribed, axis=0)
-        )
-        check_held(bonds, prescribed, scene.elastic)
-        operator = BondOperator(bonds, moduli, prescribed)
+        broken = scene.broken(lattice, family) if scene.broken else None
+        held = np.logical_and.reduce(prescribed, axis=0)
+        aside = np.zeros(lattice.count, dtype=bool)
+        while True:
+            bonds = Bonds(lattice, family, scene.cracks, scene.surface, held, broken)
+            operator = BondOperator(bonds, moduli, prescribed)
+            loose, why = mechanisms.find(
+                bonds,
+                operator,
+                prescribed,
+                scene.elastic,
+                broken is not None,
+                stability.sign != "indefinite",
+            )
+            if not len(loose):
+                break
+            if scene.loose == "refuse" or aside.sum() + len(loose) == (~held).sum():
+                raise mechanisms.refuse(why)
+            if load[:, loose].any():
+                raise mechanisms.refuse(f"a load acts where {why}")
+            aside[loose] = True
+            prescribed[:, loose] = True
+            values[:, loose] = np.nan
+            broken = mechanisms.without(bonds, broken, loose)
         seconds = perf_counter() - begun
         return cls(
             scene,
@@ -187,6 +216,11 @@ class Discretisation:
             load,
             seconds,
         )
+
+    @property
+    def damaged(self) -> bool:
+        """Whether single bonds are broken (cracks that were always there do not count)."""
+        return self.scene.broken is not None
 
     def right_hand_side(self) -> Array:
         """Load of the active unknowns less what the prescribed ones exert, flattened."""

@@ -5,8 +5,10 @@ positive, central (no rotations)
     energy, as a damaged body may have, ends the solve with a named error.
 indefinite (negative shear stiffness, positive condensed symbol)
     A saddle in the rotations. Sparse factorisation for small bodies, MINRES with the two-level
-    preconditioner of a positive companion body for large ones (condensing the rotations would
-    need an inner solve in every product).
+    preconditioner of a positive companion body for large ones (condensing the rotations needs
+    an inner solve in every product). A *damaged* body of this kind may have lost the positive
+    condensed energy of its bulk, which only conjugate gradients on the condensed displacements
+    notice: it is solved that way.
 
 BLAS reductions change in the last bits with its thread count, so BLAS is pinned to one thread
 here; the kernels themselves do not depend on theirs.
@@ -22,6 +24,7 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, cg, minres, splu
 from threadpoolctl import threadpool_limits
 
+from .condensed import Condensed
 from .errors import ConvergenceError, NegativeCurvatureError
 from .micromoduli import ElasticModuli
 from .operators import BondOperator
@@ -32,9 +35,8 @@ from .solution import Solution, Statistics
 Array = NDArray[np.float64]
 Preconditioner = Literal["auto", "two-level", "block-jacobi"]
 
-# Largest saddle point that is factorised; fill grows with the horizon, and beyond this MINRES
-# is faster and far smaller.
-_FACTORISE = 15_000
+# Largest saddle point that is factorised; beyond this MINRES is faster and far smaller.
+_FACTORISE = 3_000
 # Below this many unknowns block Jacobi needs less time than the set-up of two levels.
 _TWO_LEVEL = 2_000
 # Krylov recurrences drift from the true residual: restarts from the current solution repair it.
@@ -44,7 +46,7 @@ _RESTARTS = 6
 class _Guarded(LinearOperator):
     """The operator, watching for directions of non-positive energy."""
 
-    def __init__(self, operator: BondOperator) -> None:
+    def __init__(self, operator: LinearOperator) -> None:
         super().__init__(operator.dtype, operator.shape)
         self.operator = operator
 
@@ -129,17 +131,22 @@ def solve(
     with threadpool_limits(limits=1, user_api="blas"):
         rhs = discretisation.right_hand_side()
         x, iterations, ready = np.zeros_like(rhs), 0, perf_counter()
+        small = operator.shape[0] <= _FACTORISE
         if not rhs.any():
             method = "nothing to solve"
-        elif sign == "indefinite" and operator.shape[0] <= _FACTORISE:
+        elif sign == "indefinite" and small and not discretisation.damaged:
             method = "sparse LU"
             x, iterations = _factorise(operator, rhs, tolerance)
         else:
             m = preconditioner(operator, sign, preconditioning)
             ready = perf_counter()
-            krylov = _minres if sign == "indefinite" else _conjugate_gradients
             name = "two-level" if isinstance(m, TwoLevel) else "block Jacobi"
-            method = f"{'MINRES' if sign == 'indefinite' else 'CG'}, {name}"
+            krylov, label = _conjugate_gradients, "CG"
+            if sign == "indefinite":
+                krylov, label = _minres, "MINRES"
+                if discretisation.damaged:
+                    krylov, label = _condensed, "CG on condensed displacements"
+            method = f"{label}, {name}"
             x, iterations = krylov(operator, m, rhs, tolerance, max_iterations)
         residual = _residual(operator, x, rhs)
     if not residual <= tolerance:
@@ -178,7 +185,7 @@ class _Counter:
 
 
 def _conjugate_gradients(
-    operator: BondOperator, m: LinearOperator, rhs: Array, tolerance: float, limit: int
+    operator: LinearOperator, m: LinearOperator, rhs: Array, tolerance: float, limit: int
 ) -> tuple[Array, int]:
     guarded = _Guarded(operator)
     counter, x = _Counter(), np.zeros_like(rhs)
@@ -223,6 +230,16 @@ def _minres(
         )
         x = x + step
     return x, counter.count
+
+
+def _condensed(
+    operator: BondOperator, m: LinearOperator, rhs: Array, tolerance: float, limit: int
+) -> tuple[Array, int]:
+    condensed = Condensed(operator)
+    u, count = _conjugate_gradients(
+        condensed, condensed.preconditioner(m), condensed.condense(rhs), 0.1 * tolerance, limit
+    )
+    return condensed.expand(u, rhs), count
 
 
 def _factorise(operator: BondOperator, rhs: Array, tolerance: float) -> tuple[Array, int]:
