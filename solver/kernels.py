@@ -17,10 +17,16 @@ A = (w/|ξ|)(k_n nnᵀ + k_t ttᵀ), t̂ = (w/2) k_t t, c = (w/4)|ξ| k_t (PHYSI
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
-import numba as nb
-import numpy as np
+# Waiting OpenMP threads must sleep, not spin: on a machine that does anything else besides, a
+# spinning thread uses up the time slice of the one it waits for, and a product takes ten times
+# as long. Read when the OpenMP runtime is loaded, so set before Numba loads it.
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+
+import numba as nb  # noqa: E402
+import numpy as np  # noqa: E402
 
 # OpenMP has the cheapest fork and join of Numba's layers; the others are fallbacks.
 setattr(nb.config, "THREADING_LAYER_PRIORITY", ["omp", "tbb", "workqueue"])  # noqa: B010

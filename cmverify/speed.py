@@ -1,0 +1,340 @@
+"""Speed of the bond solver beside what one would otherwise use, as ratios taken in one run.
+
+Everything is measured on the crack-tip problem (Sect. 2.3.1): the product with the stiffness
+against SciPy's sparse formats, the whole static solve against assembled alternatives, and the
+solve's growth with the number of particles. Times of solvers are CPU seconds (all threads), so
+that a threaded code gains nothing by being threaded.
+"""
+
+from __future__ import annotations
+
+import resource
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from statistics import median
+from time import perf_counter, process_time
+from typing import Any
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse.linalg import LinearOperator, cg
+from threadpoolctl import threadpool_limits
+
+from cmverify.cases.crack_tip import STIFFNESS
+from references.analytic import lekhnitskii
+from solver import (
+    ConductivityTensor,
+    Crack,
+    Discretisation,
+    ElasticTensor,
+    Scene,
+    Support,
+    disc,
+)
+from solver.statics import solve
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of a comparison: what, and its measured values."""
+
+    name: str
+    values: dict[str, Any]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON."""
+        return asdict(self)
+
+
+def crack_tip(resolution: int) -> Scene:
+    """The crack-tip problem, mode I, at spacing a/resolution."""
+    return Scene(
+        region=disc(1.0),
+        spacing=1.0 / resolution,
+        material=ElasticTensor(STIFFNESS),
+        supports=[
+            Support.layer(
+                cells=5.5,
+                displacement=lambda x, y: lekhnitskii.crack_tip_displacement(
+                    STIFFNESS, x, y, 1.0, 0.0
+                ),
+                rotation=lambda x, y: lekhnitskii.crack_tip_rotation(STIFFNESS, x, y, 1.0, 0.0),
+            )
+        ],
+        cracks=[Crack((-1.5, 0.0), (0.0, 0.0))],
+    )
+
+
+def kernel_scenes(resolution: int) -> dict[str, Scene]:
+    """Elasticity with rotations, without, and conduction on the same disc."""
+    held = {"cells": 5.5}
+    central = ElasticTensor.isotropic(1.0, 1 / 3)
+    conductor = ConductivityTensor([[5, 2], [2, 1]])
+    region, spacing = disc(1.0), 1.0 / resolution
+    return {
+        "elastic, 3 unknowns": crack_tip(resolution),
+        "central, 2 unknowns": Scene(
+            region, spacing, central, [Support.layer(**held, displacement=(0.0, 0.0))]
+        ),
+        "conductive, 1 unknown": Scene(
+            region, spacing, conductor, [Support.layer(**held, temperature=0.0)]
+        ),
+    }
+
+
+def _timed(product: Callable[[], Any], batches: int = 15) -> float:
+    """Median seconds of one call, after a warm-up."""
+    product()
+    times = []
+    for _ in range(batches):
+        begun = perf_counter()
+        product()
+        times.append(perf_counter() - begun)
+    return median(times)
+
+
+def _sparse_formats(matrix: sparse.csr_array, components: int) -> dict[str, tuple[Any, int]]:
+    """Product callables' matrices and their bytes: CSR, symmetric CSR, blocked."""
+
+    def size(*matrices: Any) -> int:
+        return sum(m.data.nbytes + m.indices.nbytes + m.indptr.nbytes for m in matrices)
+
+    count = matrix.shape[0] // components
+    order = np.arange(matrix.shape[0]).reshape(components, count).T.ravel()
+    blocked = matrix[order][:, order].tobsr((components, components))
+    upper = sparse.triu(matrix, format="csr")
+    strict = sparse.triu(matrix, 1, format="csr").T  # a CSC view of the same numbers
+    return {
+        "SciPy CSR": (matrix.__matmul__, size(matrix)),
+        "SciPy CSR, upper half": (lambda x: upper @ x + strict @ x, size(upper)),
+        f"SciPy BSR {components}×{components}": (blocked.__matmul__, size(blocked)),
+    }
+
+
+def kernel(resolution: int = 120) -> list[Row]:
+    """Products on one thread (and on all), against SciPy's formats of the same matrix.
+
+    Returns
+    -------
+    list of Row
+        Values: ``ms`` a product, ``bonds_per_s`` (directed), ``bytes`` that a product reads
+        besides the fields, ``bytes_per_s``, ``slower`` (time over the matrix-free product's,
+        one thread each), ``memory`` (bytes over the matrix-free operator's), ``error`` (largest
+        difference of the products, relative).
+    """
+    rows = []
+    threads = numba.get_num_threads()
+    for name, scene in kernel_scenes(resolution).items():
+        operator = scene.discretise().operator
+        x = np.random.default_rng(1).normal(size=operator.shape[0])
+        exact = operator.matvec(x)
+        moved = 8 * 2 * x.size + operator.nbytes
+        numba.set_num_threads(1)
+        own = _timed(lambda operator=operator, x=x: operator.matvec(x))
+        numba.set_num_threads(threads)
+        several = _timed(lambda operator=operator, x=x: operator.matvec(x))
+        bonds = operator.directed_bonds
+        rows.append(
+            Row(
+                f"{name}: matrix-free",
+                {
+                    "ms": 1e3 * own,
+                    "bonds_per_s": bonds / own,
+                    "bytes": operator.nbytes,
+                    "bytes_per_s": moved / own,
+                    "slower": 1.0,
+                    "memory": 1.0,
+                    "error": 0.0,
+                    "threads": 1,
+                },
+            )
+        )
+        rows.append(
+            Row(
+                f"{name}: matrix-free, {threads} threads",
+                {
+                    "ms": 1e3 * several,
+                    "bonds_per_s": bonds / several,
+                    "bytes": operator.nbytes,
+                    "bytes_per_s": moved / several,
+                    "slower": several / own,
+                    "memory": 1.0,
+                    "error": 0.0,
+                    "threads": threads,
+                },
+            )
+        )
+        formats = _sparse_formats(operator.to_csr(), operator.components)
+        for label, (product, size) in formats.items():
+            blocked = "BSR" in label
+            c = operator.components
+            given = x.reshape(c, -1).T.ravel() if blocked else x
+            seconds = _timed(lambda product=product, given=given: product(given))
+            y = product(given)
+            y = y.reshape(-1, c).T.ravel() if blocked else y
+            rows.append(
+                Row(
+                    f"{name}: {label}",
+                    {
+                        "ms": 1e3 * seconds,
+                        "bonds_per_s": bonds / seconds,
+                        "bytes": size,
+                        "bytes_per_s": (size + 16 * x.size) / seconds,
+                        "slower": seconds / own,
+                        "memory": size / operator.nbytes,
+                        "error": float(np.abs(y - exact).max() / np.abs(exact).max()),
+                        "threads": 1,
+                    },
+                )
+            )
+    return rows
+
+
+def _row(name: str, cpu: float, wall: float, base: float, **more: Any) -> Row:
+    return Row(name, {"cpu_s": cpu, "wall_s": wall, "slower": cpu / base, **more})
+
+
+def solvers(resolution: int = 120, tolerance: float = 1e-8, repeats: int = 3) -> list[Row]:
+    """The whole static solve against assembled alternatives, to the same residual.
+
+    Set-up and assembly are included, compilation is not. PARDISO (`pypardiso`, extra ``bench``)
+    appears where it is installed.
+
+    Returns
+    -------
+    list of Row
+        Values: ``cpu_s`` (all threads), ``wall_s``, ``slower`` (CPU seconds over the bond
+        solver's), ``iterations``, ``residual``.
+    """
+    scene = crack_tip(resolution)
+    scene.solve(tolerance)
+    runs = []
+    for _ in range(repeats):
+        cpu, wall = process_time(), perf_counter()
+        solution = scene.solve(tolerance)
+        runs.append((process_time() - cpu, perf_counter() - wall))
+    cpu, wall = median(r[0] for r in runs), median(r[1] for r in runs)
+    statistics = solution.statistics
+    rows = [
+        _row(
+            "bond solver, two-level CG",
+            cpu,
+            wall,
+            cpu,
+            iterations=statistics.iterations,
+            residual=statistics.residual,
+        )
+    ]
+    problem = scene.discretise()
+    with threadpool_limits(limits=1, user_api="blas"):
+        rows.append(_scipy_cg(problem, tolerance, cpu))
+        pardiso = _pardiso(problem, cpu)
+    return rows + ([pardiso] if pardiso else [])
+
+
+def _scipy_cg(problem: Discretisation, tolerance: float, base: float) -> Row:
+    """SciPy CG with block Jacobi on the CSR matrix, assembly included."""
+    operator = problem.operator
+    rhs = problem.right_hand_side()
+    cpu, wall = process_time(), perf_counter()
+    matrix = operator.to_csr()
+    assembled = process_time() - cpu
+    inverse = np.linalg.inv(operator.block_diagonal)
+    c = operator.components
+    jacobi = LinearOperator(
+        operator.shape,
+        matvec=lambda r: np.einsum("pij,jp->ip", inverse, r.reshape(c, -1)).ravel(),
+        dtype=np.float64,
+    )
+    count = [0]
+    x, _ = cg(
+        matrix,
+        rhs,
+        rtol=tolerance,
+        maxiter=5000,
+        M=jacobi,
+        callback=lambda _: count.__setitem__(0, count[0] + 1),
+    )
+    cpu, wall = process_time() - cpu, perf_counter() - wall
+    return _row(
+        "SciPy CG, block Jacobi, CSR",
+        cpu,
+        wall,
+        base,
+        iterations=count[0],
+        residual=_residual(problem, x, rhs),
+        assembly_s=assembled,
+    )
+
+
+def _pardiso(problem: Discretisation, base: float) -> Row | None:
+    """MKL PARDISO through pypardiso, assembly included; None where it is not installed."""
+    try:
+        import pypardiso
+    except ImportError:
+        return None
+    rhs = problem.right_hand_side()
+    cpu, wall = process_time(), perf_counter()
+    matrix = problem.operator.to_csr()
+    assembled = process_time() - cpu
+    x = pypardiso.spsolve(sparse.csr_matrix(matrix), rhs)
+    cpu, wall = process_time() - cpu, perf_counter() - wall
+    pypardiso.ps.free_memory(everything=True)
+    return _row(
+        "MKL PARDISO",
+        cpu,
+        wall,
+        base,
+        iterations=0,
+        residual=_residual(problem, x, rhs),
+        assembly_s=assembled,
+    )
+
+
+def _residual(problem: Discretisation, x: Array, rhs: Array) -> float:
+    defect = rhs - problem.operator.matvec(x)
+    return float(np.linalg.norm(defect) / np.linalg.norm(rhs))
+
+
+def growth(resolutions: tuple[int, ...], tolerance: float = 1e-8) -> list[Row]:
+    """Set-up and solve as the lattice is refined, smallest first (peak memory only grows).
+
+    Returns
+    -------
+    list of Row
+        Values: ``particles``, ``unknowns``, ``iterations``, ``setup_s``, ``solve_s``,
+        ``us_per_particle``, ``peak_gb`` (of the process so far), ``error`` (relative L2 against
+        the closed form).
+    """
+    rows = []
+    crack_tip(resolutions[0]).solve(tolerance)
+    for resolution in resolutions:
+        scene = crack_tip(resolution)
+        begun = perf_counter()
+        solution = solve(scene.discretise(), tolerance)
+        wall = perf_counter() - begun
+        free = ~solution.prescribed
+        exact = lekhnitskii.crack_tip_displacement(STIFFNESS, *solution.points[free].T, 1.0, 0.0)
+        error = np.linalg.norm(solution.displacement[free] - exact) / np.linalg.norm(exact)
+        statistics = solution.statistics
+        rows.append(
+            Row(
+                f"a/{resolution}",
+                {
+                    "particles": statistics.particles,
+                    "unknowns": statistics.unknowns,
+                    "iterations": statistics.iterations,
+                    "residual": statistics.residual,
+                    "setup_s": statistics.setup_seconds,
+                    "solve_s": statistics.solve_seconds,
+                    "us_per_particle": 1e6 * wall / statistics.particles,
+                    "peak_gb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20,
+                    "error": float(error),
+                },
+            )
+        )
+    return rows
