@@ -9,7 +9,14 @@ import skfem
 from numpy.typing import ArrayLike, NDArray
 from skfem.helpers import dot, grad
 
-from references.fem.evaluation import ELEMENTS, Field, check_order, dirichlet_points, to_skfem
+from references.fem.evaluation import (
+    ELEMENTS,
+    Field,
+    check_mesh,
+    check_order,
+    dirichlet_points,
+    to_skfem,
+)
 from references.fem.linear import solve_with_prescribed
 from references.fem.mesh import Mesh
 
@@ -96,6 +103,7 @@ def steady_conduction(
     """
     check_order(order)
     tensor = check_conductivity(conductivity)
+    check_mesh(mesh)
     if isinstance(boundary_temperature, Mapping):
         prescribed: dict[str, Scalar] = dict(boundary_temperature)
     else:

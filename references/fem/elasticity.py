@@ -9,7 +9,14 @@ import skfem
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_matrix
 
-from references.fem.evaluation import ELEMENTS, Field, check_order, dirichlet_points, to_skfem
+from references.fem.evaluation import (
+    ELEMENTS,
+    Field,
+    check_mesh,
+    check_order,
+    dirichlet_points,
+    to_skfem,
+)
 from references.fem.linear import solve_with_prescribed
 from references.fem.mesh import Mesh
 
@@ -133,6 +140,7 @@ def solve_elasticity(
         nodes, and three components are pinned to take the rigid motion out.)
     """
     check_order(order)
+    check_mesh(mesh)
     stiffness_tensor = check_voigt(voigt)
     if displacement is None:
         prescribed: dict[str, Vector] = {}

@@ -18,6 +18,16 @@ def check_order(order: int) -> None:
         raise ValueError(f"linear and quadratic elements (order 1, 2) only, not order {order}")
 
 
+def check_mesh(mesh: Mesh) -> None:
+    """Raise ValueError if there is no mesh or one of its triangles has no area."""
+    if not isinstance(mesh, Mesh) or not len(mesh.triangles):
+        raise ValueError("a mesh of triangles is needed (see references.fem.mesh)")
+    a, b, c = (mesh.points[mesh.triangles[:, i]] for i in range(3))
+    twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    if not (np.abs(twice) > 0).all():
+        raise ValueError("the mesh has triangles without area: some of their points coincide")
+
+
 def as_points(points: ArrayLike) -> NDArray[np.float64]:
     """Points as an (n, 2) array of finite numbers."""
     found = np.atleast_2d(np.asarray(points, dtype=float))
@@ -146,7 +156,14 @@ class Field:
 
 
 def to_skfem(mesh: Mesh) -> tuple[skfem.MeshTri, dict[str, NDArray[np.int64]]]:
-    """scikit-fem's mesh and the facet numbers of each named boundary."""
+    """scikit-fem's mesh and the facet numbers of each named boundary.
+
+    Raises
+    ------
+    ValueError
+        If the mesh is no good (:func:`check_mesh`) or a boundary edge is not one of the mesh.
+    """
+    check_mesh(mesh)
     found = skfem.MeshTri(
         np.ascontiguousarray(mesh.points.T), np.ascontiguousarray(mesh.triangles.T)
     )

@@ -9,7 +9,7 @@ where G = Kᵀ A K and q falls from one at the tip to zero outside. It holds for
 traction-free faces within q's support and no body force there.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,15 +23,17 @@ from references.analytic.lekhnitskii import (
 from references.analytic.voigt import turned_axes
 from references.fem.elasticity import ElasticSolution
 from references.fem.evaluation import ELEMENTS
+from references.fem.mesh import Mesh
 
 
 @dataclass(frozen=True)
 class StressIntensity:
-    """K_I, K_II (Pa √m) in the crack's own axes and G (J/m²)."""
+    """K_I, K_II (Pa √m) in the crack's own axes, G (J/m²), and the mesh they were found on."""
 
     KI: float
     KII: float
     G: float
+    mesh: Mesh = field(repr=False, compare=False)
 
 
 def stress_intensity(
@@ -91,7 +93,8 @@ def stress_intensity(
     g11, g22 = (energy_release_rate(voigt, *mode) for mode in ((1.0, 0.0), (0.0, 1.0)))
     g12 = (energy_release_rate(voigt, 1.0, 1.0) - g11 - g22) / 2
     k1, k2 = np.linalg.solve(2 * np.array([[g11, g12], [g12, g22]]), products)
-    return StressIntensity(float(k1), float(k2), energy_release_rate(voigt, float(k1), float(k2)))
+    rate = energy_release_rate(voigt, float(k1), float(k2))
+    return StressIntensity(float(k1), float(k2), rate, solution.mesh)
 
 
 def _matrix(voigt_stress: NDArray[np.float64]) -> NDArray[np.float64]:

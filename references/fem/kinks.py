@@ -20,29 +20,20 @@ from scipy.interpolate import CubicSpline
 from references.analytic.lekhnitskii import crack_tip_displacement, energy_release_rate
 from references.fem.elasticity import solve_elasticity
 from references.fem.interaction import stress_intensity
-from references.fem.mesh import crack_tip_disc, disc
+from references.fem.mesh import Mesh, crack_tip_disc, disc
 
 
-def kink_matrix(
-    voigt: ArrayLike, angle: float, kink: float = 1e-4, growth: float = 0.15
-) -> NDArray[np.float64]:
-    """F(ω): stress intensity factors at the tip of a short kink for unit K_I and unit K_II.
+def kink_mesh(angle: float, kink: float = 1e-4, growth: float = 0.15) -> Mesh:
+    """Unit disc with a crack from (−1, 0) to its centre and a kink from there.
 
     Parameters
     ----------
-    voigt : (3, 3) array_like
-        The old crack lies along the negative axis 1.
     angle : float
-        ω, rad, |ω| < 2.6.
+        ω of the kink, rad, |ω| < 2.6; for ω = 0 there is none.
     kink : float
-        Length of the kink over the radius of the disc; F is right to about this.
+        Its length.
     growth : float
         Of the elements away from the two tips, per unit length.
-
-    Returns
-    -------
-    (2, 2) float array
-        k_I, k_II (rows) in the kink's own axes for K_I = 1 and K_II = 1 (columns).
 
     Raises
     ------
@@ -53,14 +44,38 @@ def kink_matrix(
         raise ValueError("the kink's angle must lie between −2.6 and 2.6 rad")
     if not 1e-5 <= kink <= 0.1:
         raise ValueError("the kink must be short: 1e-5 to 0.1 of the disc's radius")
-    tip_size = kink / 100
     if abs(angle) < 1e-9:
-        mesh = crack_tip_disc(0.15, tip_size=tip_size, growth=growth)
-        tip = np.zeros(2)
-    else:
-        tip = kink * np.array([np.cos(angle), np.sin(angle)])
-        cracks = [((-1.0, 0.0), (0.0, 0.0)), ((0.0, 0.0), (float(tip[0]), float(tip[1])))]
-        mesh = disc(0.15, cracks=cracks, tip_size=tip_size, growth=growth)
+        return crack_tip_disc(0.15, tip_size=kink / 100, growth=growth)
+    tip = (kink * float(np.cos(angle)), kink * float(np.sin(angle)))
+    cracks = [((-1.0, 0.0), (0.0, 0.0)), ((0.0, 0.0), tip)]
+    return disc(0.15, cracks=cracks, tip_size=kink / 100, growth=growth)
+
+
+def kink_matrix(
+    voigt: ArrayLike,
+    angle: float,
+    kink: float = 1e-4,
+    growth: float = 0.15,
+    mesh: Mesh | None = None,
+) -> NDArray[np.float64]:
+    """F(ω): stress intensity factors at the tip of a short kink for unit K_I and unit K_II.
+
+    Parameters
+    ----------
+    voigt : (3, 3) array_like
+        The old crack lies along the negative axis 1.
+    angle, kink, growth : float
+        See :func:`kink_mesh`; F is right to about the kink's length.
+    mesh : Mesh, optional
+        That of :func:`kink_mesh` if it is there already.
+
+    Returns
+    -------
+    (2, 2) float array
+        k_I, k_II (rows) in the kink's own axes for K_I = 1 and K_II = 1 (columns).
+    """
+    mesh = kink_mesh(angle, kink, growth) if mesh is None else mesh
+    tip = mesh.tips[0]
     columns = []
     for mode in ((1.0, 0.0), (0.0, 1.0)):
 

@@ -11,13 +11,29 @@ def factorise(matrix: csr_matrix) -> SuperLU:
 
     Minimum degree on A + Aᵀ keeps the fill of a symmetric matrix several times below that of
     SuperLU's default, which is meant for unsymmetric ones.
+
+    Raises
+    ------
+    MemoryError
+        If SuperLU cannot hold the factors.
+    FloatingPointError
+        If the matrix is singular.
     """
-    return splu(
-        matrix.tocsc(),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
+    try:
+        return splu(
+            matrix.tocsc(),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+    except MemoryError as error:
+        # SuperLU counts its fill with 32 bits, whatever memory there is
+        raise MemoryError(
+            f"{matrix.shape[0]} unknowns are too many for SuperLU: use a coarser mesh, or FEniCSx"
+            " on several processes (references.fenicsx.bridge)"
+        ) from error
+    except RuntimeError as error:
+        raise FloatingPointError(f"the finite-element matrix is singular ({error})") from error
 
 
 def solve_with_prescribed(

@@ -182,6 +182,9 @@ def _triangulate(
     """
     if not np.isfinite(size) or size <= 0:
         raise ValueError(f"the element size must be positive, not {size}")
+    for start, end in cracks:
+        if not np.isfinite([start, end]).all() or np.hypot(*np.subtract(end, start)) == 0:
+            raise ValueError(f"a crack needs two different finite ends, not {start} and {end}")
     if any(h <= 0 for _, h in refine):
         raise ValueError("the element size at a crack tip or hole must be positive")
     options = {

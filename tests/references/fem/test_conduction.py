@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -90,5 +92,10 @@ def test_bad_input_is_refused() -> None:
         steady_conduction(mesh, D, {})
     with pytest.raises(ValueError, match="order"):
         steady_conduction(mesh, D, 0.0, order=3)
+    with pytest.raises(ValueError, match="a mesh of triangles is needed"):
+        steady_conduction(None, D, {"circle": 0.0})  # type: ignore[arg-type]
+    flat = replace(mesh, points=mesh.points * [1, 0])
+    with pytest.raises(ValueError, match="without area"):
+        steady_conduction(flat, D, 0.0)
     with pytest.raises(ValueError, match="finite coordinates"):
         steady_conduction(mesh, D, 0.0).at([[np.nan, 0]])

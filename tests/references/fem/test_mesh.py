@@ -125,5 +125,7 @@ def test_bad_shapes_are_refused() -> None:
         rectangle(1, 1, 0.1, holes=[(0.4, 0, 0.2)])
     with pytest.raises(ValueError, match="no boundary 'rim'"):
         disc(0.5).nodes("rim")
+    with pytest.raises(ValueError, match="two different finite ends"):
+        disc(0.1, cracks=[((0, 0), (0, 0))])
     with pytest.raises(ValueError, match="shorter than two elements"):
         rectangle(2, 2, 0.5, cracks=[((0, 0), (0.1, 0))])
