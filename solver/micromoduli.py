@@ -124,6 +124,7 @@ def calibrate(
     material: Material,
     calibration: Calibration = "lattice",
     law: AngularLaw | None = None,
+    explain: bool = True,
 ) -> Moduli:
     """Bond moduli of `material` on `family`.
 
@@ -136,6 +137,9 @@ def calibrate(
         By default Cosine in conduction and the paper's two-harmonic law in elasticity, but for
         ``lattice`` UniformShear where the two-harmonic k_t would take both signs (its rotation
         block could then be singular).
+    explain : bool
+        Whether the error of ``positive`` shall look for what would do instead, which takes some
+        tenths of a second.
 
     Returns
     -------
@@ -145,7 +149,8 @@ def calibrate(
     ------
     CalibrationError
         If the law has no member with the tensor's moments, or (``positive``) no non-negative
-        moduli exist on this family; the message says which m would do.
+        moduli exist on this family; the message says which m would do, or that none will, and
+        what to use instead.
     """
     if calibration not in get_args(Calibration):
         raise ValueError(
@@ -153,12 +158,12 @@ def calibrate(
         )
     chosen, law = law, default_law(material) if law is None else law
     if isinstance(material, ElasticTensor):
-        moduli = _elastic(family, material, calibration, law)
+        moduli = _elastic(family, material, calibration, law, explain)
         mixed = moduli.shear.min() < 0 < moduli.shear.max()
         if chosen is None and calibration == "lattice" and mixed:
-            moduli = _elastic(family, material, calibration, UniformShear())
+            moduli = _elastic(family, material, calibration, UniformShear(), explain)
         return moduli
-    return _conductive(family, material, calibration, law)
+    return _conductive(family, material, calibration, law, explain)
 
 
 def _solve(system: Array, target: Array, what: str) -> Array:
@@ -182,7 +187,11 @@ def _circle(law: AngularLaw) -> Array:
 
 
 def _elastic(
-    family: Family, material: ElasticTensor, calibration: Calibration, law: AngularLaw
+    family: Family,
+    material: ElasticTensor,
+    calibration: Calibration,
+    law: AngularLaw,
+    explain: bool,
 ) -> ElasticModuli:
     target = material.voigt[_PAIRS3]
     psi = family.angle
@@ -203,7 +212,7 @@ def _elastic(
     basis_n, basis_t = law.elastic(psi, material)
     normal, shear = coefficients @ basis_n, coefficients @ basis_t
     if calibration == "positive":
-        normal, shear = _positive_elastic(family, material, weight, normal, shear)
+        normal, shear = _positive_elastic(family, material, normal, shear, explain)
     # Rounding must not give rotations a stiffness that no bond has (ν = 1/3 in plane stress).
     tiny = _NO_SHEAR * np.abs(normal).max()
     if np.abs(shear).max() <= tiny:
@@ -212,7 +221,7 @@ def _elastic(
 
 
 def _positive_elastic(
-    family: Family, material: ElasticTensor, weight: Array, normal: Array, shear: Array
+    family: Family, material: ElasticTensor, normal: Array, shear: Array, explain: bool
 ) -> tuple[Array, Array]:
     c = material.voigt
     difference = c[2, 2] - c[0, 1]
@@ -220,8 +229,7 @@ def _positive_elastic(
         raise CalibrationError(
             f"no non-negative bond moduli exist for this solid at any m: their shear parts sum to "
             f"4 (C66 − C12) = {4 * difference:.6g} < 0 (ν > 1/3 for an isotropic solid in plane "
-            f"stress). Use calibration='lattice', whose negative shear stiffness is sound as "
-            f"long as the condensed symbol is positive"
+            f"stress). {_instead(family, material, explain)}"
         )
     half = family.size // 2
     scale_n = np.maximum(np.abs(normal[:half]), 0.05 * np.abs(normal).max())
@@ -231,7 +239,7 @@ def _positive_elastic(
     wanted = np.concatenate([normal[:half], shear[:half]]) / scale
     found = closest(moments * scale, target, np.maximum(wanted, 0.0))
     if found is None:
-        raise CalibrationError(_no_positive(family, material))
+        raise CalibrationError(_no_positive(family, material, explain))
     found = found * scale
     return np.tile(found[:half], 2), np.tile(found[half:], 2)
 
@@ -258,24 +266,56 @@ def representable(family: Family, material: Material) -> bool:
     return feasible(moments / norms[:, None] * norms.max(), target / norms * norms.max())
 
 
-def _no_positive(family: Family, material: Material, largest: int = 14) -> str:
-    """Say which m would have non-negative moduli, or that none up to `largest` has."""
+def representable_by_directions(material: Material, count: int = 360) -> bool:
+    """Whether non-negative moduli exist for bonds in `count` directions, as no lattice has.
+
+    If not, no family of any m has them, for the tensors that can be made grow with the
+    directions; half a degree between these decides but the last 1e-4 of that growth.
+    """
+    psi = np.pi * np.arange(count) / count
+    if isinstance(material, ConductivityTensor):
+        return feasible(conductive_moments(psi), material.matrix[_PAIRS2])
+    moments_n, moments_t = elastic_moments(psi)
+    decoupled = stretch_rows(psi)[1][1:]
+    rows = np.hstack([moments_n, moments_t])
+    rows = np.vstack([rows, np.hstack([np.zeros_like(decoupled), decoupled])])
+    return feasible(rows, np.concatenate([material.voigt[_PAIRS3], [0.0, 0.0]]))
+
+
+def _no_positive(family: Family, material: Material, explain: bool, largest: int = 14) -> str:
+    """Say which m would have non-negative moduli, or that none up to `largest` has, or none."""
+    here = f"no non-negative bond moduli represent this tensor at m = {family.m:g}"
+    if not explain:
+        return here
+    if not representable_by_directions(material):
+        return (
+            f"{here}, nor at any m ≤ {largest} or beyond: bonds in all directions together do not "
+            f"make it. {_instead(family, material, explain)}"
+        )
     for m in range(int(family.m) + 1, largest + 1):
         other = Family(m, family.spacing * family.m / m, family.area_rule, family.influence)
         if representable(other, material):
-            return (
-                f"no non-negative bond moduli represent this tensor at m = {family.m:g}; "
-                f"they exist at m = {m}. Use that, or calibration='lattice'"
-            )
+            instead = _instead(family, material, explain)
+            return f"{here}; they exist at m = {m}. At this m: {instead}"
     return (
-        f"no non-negative bond moduli represent this tensor at m = {family.m:g}, nor at any "
-        f"m ≤ {largest}. Use calibration='lattice', whose negative moduli are sound as long as "
-        f"the condensed symbol is positive"
+        f"{here}, nor at any m ≤ {largest}, whose bonds have too few directions. "
+        f"{_instead(family, material, explain)}"
     )
 
 
+def _instead(family: Family, material: Material, explain: bool) -> str:
+    # Stability judges moduli, so that it is imported where it is asked.
+    from .stability import remedy
+
+    return remedy(family, material) if explain else ""
+
+
 def _conductive(
-    family: Family, material: ConductivityTensor, calibration: Calibration, law: AngularLaw
+    family: Family,
+    material: ConductivityTensor,
+    calibration: Calibration,
+    law: AngularLaw,
+    explain: bool,
 ) -> ConductiveModuli:
     target = material.matrix[_PAIRS2]
     psi = family.angle
@@ -297,7 +337,7 @@ def _conductive(
         moments, target = _positive_system(family, material)
         found = closest(moments * scale, target, np.maximum(conductivity[:half] / scale, 0.0))
         if found is None:
-            raise CalibrationError(_no_positive(family, material))
+            raise CalibrationError(_no_positive(family, material, explain))
         conductivity = np.tile(found * scale, 2)
     return ConductiveModuli(_mirrored(conductivity))
 

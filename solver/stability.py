@@ -21,15 +21,39 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from .errors import InadmissibleMaterialError
+from .errors import CalibrationError, InadmissibleMaterialError
 from .family import Family
-from .micromoduli import ConductiveModuli, ElasticModuli, Moduli, effective_tensor
+from .laws import AngularLaw, TwoHarmonic, UniformShear
+from .micromoduli import (
+    Calibration,
+    ConductiveModuli,
+    ElasticModuli,
+    Moduli,
+    calibrate,
+    effective_tensor,
+)
+from .tensors import ConductivityTensor, ElasticTensor, Material
 
 Array = NDArray[np.float64]
 Sign = Literal["positive", "central", "indefinite", "inadmissible"]
 
 # Rotation stiffness below this share of its largest possible value counts as none.
 _SINGULAR = 1e-9
+# Horizons tried, and grid of the zone, when looking for what would be stable instead.
+_REMEDY_HORIZONS = range(2, 9)
+_REMEDY_GRID = 16
+# In order of preference: non-negative bonds keep damaged bodies stable too.
+_ELASTIC_REMEDIES: tuple[tuple[Calibration, AngularLaw | None], ...] = (
+    ("positive", None),
+    ("positive", UniformShear()),
+    ("lattice", None),
+    ("lattice", UniformShear()),
+    ("lattice", TwoHarmonic()),
+)
+_CONDUCTIVE_REMEDIES: tuple[tuple[Calibration, AngularLaw | None], ...] = (
+    ("positive", None),
+    ("lattice", None),
+)
 
 
 @dataclass(frozen=True)
@@ -210,24 +234,87 @@ def assess(family: Family, moduli: Moduli, count: int = 48) -> Stability:
     return Stability(sign, margin, (float(worst[0]), float(worst[1])), (low, high))
 
 
+def remedy(family: Family, material: Material) -> str:
+    """What to use where a calibration is refused: a sentence for its error message.
+
+    Every calibration and law is tried at the family's own m first, then at others. What is named
+    has been found stable; that nothing is named means that all of it is unstable or does not
+    exist.
+
+    Parameters
+    ----------
+    family : Family
+    material : ElasticTensor or ConductivityTensor
+    """
+    remedies, cause = _CONDUCTIVE_REMEDIES, ""
+    if isinstance(material, ElasticTensor):
+        remedies = _ELASTIC_REMEDIES
+        if material.voigt[2, 2] < material.voigt[0, 1]:
+            remedies = tuple(r for r in remedies if r[0] == "lattice")
+            cause = (
+                ": C66 < C12 asks for shear bonds that are negative on the mean, and here they "
+                "outweigh the axial ones"
+            )
+    for m in (family.m, *(m for m in _REMEDY_HORIZONS if m != family.m)):
+        other = Family(m, family.spacing * family.m / m, family.area_rule, family.influence)
+        for calibration, law in remedies:
+            found = _trial(other, material, calibration, law)
+            if found is None or found.sign == "inadmissible":
+                continue
+            named = "" if law is None else f", law={type(law).__name__}()"
+            where = "" if m == family.m else f" at m = {m}"
+            choice = f"calibration={calibration!r}{named}{where}"
+            return f"Use {choice} (stable, margin {found.margin:.2g})."
+    return (
+        f"No calibration or law of this package is stable for it at any "
+        f"m ≤ {_REMEDY_HORIZONS[-1]}{cause}. Use finite elements for this solid."
+    )
+
+
+def _trial(
+    family: Family, material: Material, calibration: Calibration, law: AngularLaw | None
+) -> Stability | None:
+    """Stability of a calibration, None where it has no moduli."""
+    try:
+        moduli = calibrate(family, material, calibration, law, explain=False)
+    except CalibrationError:
+        return None
+    coarse = assess(family, moduli, _REMEDY_GRID)
+    return coarse if coarse.sign == "inadmissible" else assess(family, moduli)
+
+
 def require_admissible(family: Family, moduli: Moduli) -> Stability:
     """`assess`, and refuse what is unstable in bulk.
 
     Raises
     ------
     InadmissibleMaterialError
-        With the wave vector at which the condensed symbol is not positive.
+        With the wave vector at which the condensed symbol is not positive, and with a
+        calibration, law or m that is stable for the same tensor if there is one.
     """
     found = assess(family, moduli)
     if found.sign == "inadmissible":
         k1, k2 = found.wave_vector
-        if found.margin == -np.inf:
+        low, high = found.rotation_range
+        if low * high < 0:
             why = "the rotation stiffness of the bonds passes through zero"
+        elif found.margin == -np.inf:
+            why = "a pattern of rotations strains no shear bond (the rotation stiffness is zero)"
         else:
             why = f"the condensed symbol is not positive (relative value {found.margin:.3g})"
         raise InadmissibleMaterialError(
             f"this material is unstable in bulk at m = {family.m:g}: {why} at the wave vector "
-            f"k Δx = ({k1:.4f}, {k2:.4f}). Try calibration='positive', law=UniformShear() or "
-            f"another m"
+            f"k Δx = ({k1:.4f}, {k2:.4f}). {_instead(family, moduli)}"
         )
     return found
+
+
+def _instead(family: Family, moduli: Moduli) -> str:
+    """`remedy` for the tensor that these moduli make."""
+    tensor = effective_tensor(family, moduli)
+    try:
+        elastic = isinstance(moduli, ElasticModuli)
+        material = ElasticTensor(tensor) if elastic else ConductivityTensor(tensor)
+    except ValueError:
+        return "The lattice sums make no positive-definite tensor: use calibration='lattice'."
+    return remedy(family, material)
