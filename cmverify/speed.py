@@ -11,6 +11,7 @@ from __future__ import annotations
 import resource
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from functools import partial
 from statistics import median
 from time import perf_counter, process_time
 from typing import Any
@@ -134,9 +135,9 @@ def kernel(resolution: int = 120) -> list[Row]:
         exact = operator.matvec(x)
         moved = 8 * 2 * x.size + operator.nbytes
         numba.set_num_threads(1)
-        own = _timed(lambda operator=operator, x=x: operator.matvec(x))
+        own = _timed(partial(operator.matvec, x))
         numba.set_num_threads(threads)
-        several = _timed(lambda operator=operator, x=x: operator.matvec(x))
+        several = _timed(partial(operator.matvec, x))
         bonds = operator.directed_bonds
         rows.append(
             Row(
@@ -173,7 +174,7 @@ def kernel(resolution: int = 120) -> list[Row]:
             blocked = "BSR" in label
             c = operator.components
             given = x.reshape(c, -1).T.ravel() if blocked else x
-            seconds = _timed(lambda product=product, given=given: product(given))
+            seconds = _timed(partial(product, given))
             y = product(given)
             y = y.reshape(-1, c).T.ravel() if blocked else y
             rows.append(
@@ -318,7 +319,8 @@ def growth(resolutions: tuple[int, ...], tolerance: float = 1e-8) -> list[Row]:
         solution = solve(scene.discretise(), tolerance)
         wall = perf_counter() - begun
         free = ~solution.prescribed
-        exact = lekhnitskii.crack_tip_displacement(STIFFNESS, *solution.points[free].T, 1.0, 0.0)
+        x, y = solution.points[free].T
+        exact = lekhnitskii.crack_tip_displacement(STIFFNESS, x, y, 1.0, 0.0)
         error = np.linalg.norm(solution.displacement[free] - exact) / np.linalg.norm(exact)
         statistics = solution.statistics
         rows.append(

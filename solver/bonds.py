@@ -212,6 +212,13 @@ class Bonds:
         values[self.special] = self.factors[offset]
         return values
 
+    def factors_of(self, particles: Indices) -> Array:
+        """Factors of all bonds of some particles, shape (family size, particles)."""
+        factors = self.exist(particles).astype(np.float64)
+        columns = self.column[particles]
+        factors[:, columns >= 0] = self.factors[:, columns[columns >= 0]]
+        return factors
+
     @property
     def nbytes(self) -> int:
         """Memory of everything stored for single bonds."""

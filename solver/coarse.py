@@ -24,6 +24,9 @@ from .operators import BondOperator
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
+# Hats a node at most; a support in more pieces than this is rubble.
+_PIECES = 4
+
 
 @dataclass(frozen=True)
 class _Rows:
@@ -37,9 +40,14 @@ class _Rows:
     def of(cls, matrix: sparse.csr_array) -> _Rows:
         return cls(matrix.indptr.astype(np.uint64), matrix.indices.astype(np.uint64), matrix.data)
 
-    def __call__(self, values: Array) -> Array:
-        out = np.empty((values.shape[0], len(self.pointer) - 1))
-        kernels.weighted_rows(self.pointer, self.index, self.weight, values, out)
+    def __call__(
+        self, values: Array, rows: NDArray[np.uint64] | None = None, out: Array | None = None
+    ) -> Array:
+        """The matrix times each component; only some rows, into `out`, if those are given."""
+        count = len(self.pointer) - 1
+        rows = np.arange(count, dtype=np.uint64) if rows is None else rows
+        out = np.empty((values.shape[0], count)) if out is None else out
+        kernels.weighted_rows(rows, self.pointer, self.index, self.weight, values, out)
         return out
 
 
@@ -72,8 +80,8 @@ class Hats:
         weight = np.stack([(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy], axis=1)
         piece = self._pieces(node, weight)
         self.split = len(np.unique(node[piece > 0]))
-        used = weight > 0
-        self._pieces_most = int(piece.max(initial=0)) + 1
+        used = (weight > 0) & (piece < _PIECES)
+        self._pieces_most = int(piece[used].max(initial=0)) + 1
         key = node[used] * self._pieces_most + piece[used]
         keys, hat = np.unique(key, return_inverse=True)
         self.count = len(keys)
@@ -125,12 +133,31 @@ class Hats:
             size = len(members)
             graph = sparse.coo_array((np.ones(len(i), np.int8), (i, j)), shape=(size, size))
             _, labels = connected_components(graph, directed=False)
-            flat_piece[mine[order]] = labels
+            # The heaviest piece first: pieces beyond the fourth get no hat of their own.
+            weights = np.bincount(labels, flat_weight[mine[order]])
+            rank = np.empty(len(weights), dtype=np.int64)
+            rank[np.argsort(-weights, kind="stable")] = np.arange(len(weights))
+            flat_piece[mine[order]] = rank[labels]
         return piece
 
-    def galerkin(self) -> sparse.csc_array:
-        """Pᵀ K P, shape (components·count, components·count), component by component."""
-        operator, h = self.operator, self.cells
+    def galerkin(
+        self, known: tuple[Hats, sparse.csc_array] | None = None, changed: Indices | None = None
+    ) -> sparse.csc_array:
+        """Pᵀ K P, component by component.
+
+        Parameters
+        ----------
+        known : (Hats, csc_array), optional
+            Hats and matrix of the same body before some bonds changed.
+        changed : ndarray of int, optional
+            Active particles (positions) whose bonds have changed since. Only hats that feel
+            them are probed again, with products on a window around them.
+
+        Returns
+        -------
+        csc_array, shape (components·count, components·count)
+        """
+        operator, h, c = self.operator, self.cells, self.operator.components
         reach = operator.bonds.family.reach
         # Offsets of nodes whose hats can meet through a bond, and the period that keeps the
         # hats of one colour apart.
@@ -141,30 +168,104 @@ class Hats:
             (self._pieces_most, row.max() + 2 * period + 1, column.max() + 2 * period + 1), -1
         )
         lookup[self._piece, row + period, column + period] = np.arange(self.count)
-        c, values, starts, ends = operator.components, [], [], []
+        stale = np.ones(self.count, dtype=bool) if known is None else self._stale(changed)
+        view = _Window(self, stale, h + reach)
+        values, starts, ends = [], [], []
         for colour in range(self._pieces_most * period**2):
             piece, rest = divmod(colour, period**2)
             colour_row, colour_column = divmod(rest, period)
             lit = (self._piece == piece) & (row % period == colour_row)
-            lit &= column % period == colour_column
+            lit &= (column % period == colour_column) & stale
             if not lit.any():
                 continue
             up = (colour_row - row + window) % period - window
             right = (colour_column - column + window) % period - window
             source = lookup[piece, row + up + period, column + right + period]
-            felt = np.nonzero(source >= 0)[0]
+            felt = np.nonzero((source >= 0) & stale[source])[0]
             for b in range(c):
-                unit = np.zeros((c, self.count))
-                unit[b, lit] = 1.0
-                image = operator.product(self.prolong(unit), masked=True)
-                answer = self.restrict(image)[:, felt]
+                answer = view.probe(lit, b)[:, felt]
                 for a in range(c):
                     values.append(answer[a])
                     starts.append(a * self.count + felt)
                     ends.append(b * self.count + source[felt])
         size = c * self.count
-        matrix = sparse.coo_array(
-            (np.concatenate(values), (np.concatenate(starts), np.concatenate(ends))),
-            shape=(size, size),
-        ).tocsc()
-        return matrix
+        data, i, j = np.concatenate(values), np.concatenate(starts), np.concatenate(ends)
+        if known is not None:
+            # Columns of stale hats were probed; their rows follow by symmetry, the rest stands.
+            mirrored = ~stale[i % self.count]
+            old_data, old_i, old_j = self._standing(*known, stale)
+            data = np.concatenate([data, data[mirrored], old_data])
+            i, j = (
+                np.concatenate([i, j[mirrored], old_i]),
+                np.concatenate([j, i[mirrored], old_j]),
+            )
+        return sparse.coo_array((data, (i, j)), shape=(size, size)).tocsc()
+
+    def _stale(self, changed: Indices | None) -> NDArray[np.bool_]:
+        """Hats whose image under K may differ because of particles with changed bonds."""
+        h, lattice = self.cells, self.operator.bonds.lattice
+        nodes = np.zeros((lattice.shape[0] // h + 2, self._width), dtype=bool)
+        if changed is not None and len(changed):
+            particles = self.operator.active[changed]
+            rows, columns = (axis[particles] for axis in lattice.cells)
+            far = h + self.operator.bonds.family.reach
+            for dr in range(-far, far + 1, h):
+                for dc in range(-far, far + 1, h):
+                    r = np.clip((rows + dr) // h, 0, nodes.shape[0] - 2)
+                    k = np.clip((columns + dc) // h, 0, nodes.shape[1] - 2)
+                    for one in (0, 1):
+                        nodes[r + one, k] = nodes[r + one, k + 1] = True
+        return nodes.ravel()[self._node]
+
+    def _standing(
+        self, before: Hats, matrix: sparse.csc_array, stale: NDArray[np.bool_]
+    ) -> tuple[Array, Indices, Indices]:
+        """Entries of the old matrix between hats that are not stale, renumbered."""
+        keys = self._node * 64 + self._piece
+        old_keys = before._node * 64 + before._piece
+        where = np.minimum(np.searchsorted(keys, old_keys), self.count - 1)
+        same = (keys[where] == old_keys) & ~stale[where]
+        renumber = np.where(same, where, -1)
+        entries = matrix.tocoo()
+        i, j = renumber[entries.row % before.count], renumber[entries.col % before.count]
+        kept = (i >= 0) & (j >= 0)
+        offset_i = entries.row // before.count * self.count
+        offset_j = entries.col // before.count * self.count
+        return entries.data[kept], (offset_i + i)[kept], (offset_j + j)[kept]
+
+
+class _Window:
+    """Products with hats, on the part of the lattice that some of them reach."""
+
+    def __init__(self, hats: Hats, stale: NDArray[np.bool_], margin: int) -> None:
+        self.hats, operator = hats, hats.operator
+        h, lattice = hats.cells, operator.bonds.lattice
+        self.values = np.zeros((operator.components, hats.count))
+        self.fine = np.zeros((operator.components, len(operator.active)))
+        self.image = np.zeros_like(self.fine)
+        self.answer = np.zeros_like(self.values)
+        row, column = hats._node // hats._width * h, hats._node % hats._width * h
+        if not stale.any():
+            return
+        # Everything that a stale hat's image can touch, and the hats that can feel it.
+        low = row[stale].min() - margin, column[stale].min() - margin
+        high = row[stale].max() + margin, column[stale].max() + margin
+        rows, columns = (axis[operator.active] for axis in lattice.cells)
+        inside = (rows >= low[0]) & (rows <= high[0])
+        inside &= (columns >= low[1]) & (columns <= high[1])
+        self.particles = np.nonzero(inside)[0].astype(np.uint64)
+        near = (row >= low[0] - h) & (row <= high[0] + h)
+        near &= (column >= low[1] - h) & (column <= high[1] + h)
+        self.near = np.nonzero(near)[0].astype(np.uint64)
+        self.segments = operator.clipped_segments(*low, *high)
+        operator.clear()
+
+    def probe(self, lit: NDArray[np.bool_], component: int) -> Array:
+        """Pᵀ K P e for the sum e of the lit hats in one component."""
+        hats, operator = self.hats, self.hats.operator
+        self.values[:] = 0.0
+        self.values[component, lit] = 1.0
+        hats.prolong(self.values, self.particles, self.fine)
+        operator.product(self.fine, masked=True, segments=self.segments, out=self.image)
+        hats.restrict(self.image, self.near, self.answer)
+        return self.answer

@@ -25,8 +25,8 @@ from typing import Any
 # as long. Read when the OpenMP runtime is loaded, so set before Numba loads it.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
-import numba as nb  # noqa: E402
-import numpy as np  # noqa: E402
+import numba as nb
+import numpy as np
 
 # OpenMP has the cheapest fork and join of Numba's layers; the others are fallbacks.
 setattr(nb.config, "THREADING_LAYER_PRIORITY", ["omp", "tbb", "workqueue"])  # noqa: B010
@@ -223,9 +223,10 @@ def block_scale(segments, bulk, own, residual, out):
 
 
 @nb.njit(**_OPTIONS)
-def weighted_rows(pointer, index, weight, values, out):
-    """Sparse matrix (compressed rows) times each component: (c, columns) → (c, rows)."""
-    for row in nb.prange(pointer.size - 1):
+def weighted_rows(rows, pointer, index, weight, values, out):
+    """Some rows of a sparse matrix (compressed rows) times each component of (c, columns)."""
+    for r in nb.prange(rows.size):
+        row = rows[r]
         for c in range(values.shape[0]):
             total = 0.0
             for k in range(pointer[row], pointer[row + 1]):

@@ -9,6 +9,7 @@ heat) per unit volume.
 from __future__ import annotations
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -141,27 +142,54 @@ class BondOperator(LinearOperator):
 
     # ---- products -----------------------------------------------------------------------
 
-    def product(self, values: Array, masked: bool = False) -> Array:
+    def product(
+        self,
+        values: Array,
+        masked: bool = False,
+        segments: NDArray[np.uint64] | None = None,
+        out: Array | None = None,
+    ) -> Array:
         """K x for values of shape (components, active), in that shape.
 
         With `masked`, prescribed components of the values and of the result count as zero
-        (instead of the identity rows of `matvec`).
+        (instead of the identity rows of `matvec`). With `segments` (from `clipped_segments`,
+        after `clear`) only their particles are read and written in `out`.
         """
+        segments = self.segments if segments is None else segments
         values = np.ascontiguousarray(values, dtype=np.float64)
         masked_values = values if self.fixed is None else np.where(self.fixed, 0.0, values)
         # Only cells of active particles are ever written: the others stay zero.
-        kernels.scatter(self.segments, masked_values, self._grid)
-        out = self.apply_grid(self._grid)
+        kernels.scatter(segments, masked_values, self._grid)
+        out = self.apply_grid(self._grid, segments, out)
         if self.fixed is not None:
             out[self.fixed] = 0.0 if masked else self.identity_scale * values[self.fixed]
         return out
 
-    def apply_grid(self, grid: Array) -> Array:
+    def clear(self) -> None:
+        """Forget the last field: needed before products on a part of the body."""
+        self._grid.fill(0.0)
+
+    def clipped_segments(self, row0: int, column0: int, row1: int, column1: int) -> Any:
+        """The parts of the segments within a window of the padded grid (ends included)."""
+        width = self.bonds.lattice.shape[1]
+        segments = self.segments.astype(np.int64)
+        row, column = segments[:, 0] // width, segments[:, 0] % width
+        start = np.maximum(column, column0) - column
+        stop = np.minimum(column + segments[:, 1], column1 + 1) - column
+        kept = (row >= row0) & (row <= row1) & (stop > start)
+        clipped = segments + start[:, None] * np.array([1, 0, 1, 0, 1, 1])
+        clipped[:, 1] = stop - start
+        return np.ascontiguousarray(clipped[kept], dtype=np.uint64)
+
+    def apply_grid(
+        self, grid: Array, segments: NDArray[np.uint64] | None = None, out: Array | None = None
+    ) -> Array:
         """Rows of the active particles for a field on the padded grid, (components, active)."""
-        out = np.empty((self.components, len(self.active)))
+        if out is None:
+            out = np.empty((self.components, len(self.active)))
         self._kernel(
             grid,
-            self.segments,
+            self.segments if segments is None else segments,
             self._steps,
             self._half_blocks,
             self._bulk,

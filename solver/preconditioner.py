@@ -104,6 +104,9 @@ class TwoLevel(LinearOperator):
         Chebyshev degree, products a sweep; one V-cycle costs 2 × degree products.
     regularisation : float
         Relative shift of the coarse diagonal.
+    previous : TwoLevel, optional
+        Of the same body before some bonds broke: hats are split anew along what broke, and only
+        the coarse entries that feel it are computed again.
 
     Raises
     ------
@@ -117,6 +120,7 @@ class TwoLevel(LinearOperator):
         cells: int | None = None,
         degree: int = 2,
         regularisation: float = _REGULARISATION,
+        previous: TwoLevel | None = None,
     ) -> None:
         super().__init__(operator.dtype, operator.shape)
         begun = perf_counter()
@@ -126,10 +130,30 @@ class TwoLevel(LinearOperator):
             largest = np.sqrt(operator.shape[0] / _LARGEST_COARSE)
             cells = max(_CELLS, int(np.ceil(largest)))
         self.hats = Hats(operator, cells)
-        self._solve = _factorise(self.hats.galerkin(), regularisation)
+        self._regularisation = regularisation
+        known = changed = None
+        if previous is not None:
+            known = previous.hats, previous.coarse
+            changed = changed_particles(previous.operator, operator)
+        #: Galerkin matrix of the hats.
+        self.coarse: sparse.csc_array = self.hats.galerkin(known, changed)
+        self._solve = _factorise(self.coarse, regularisation)
         self.largest = self._largest_eigenvalue()
         #: Wall time of the set-up, s.
         self.seconds = perf_counter() - begun
+
+    def updated(self, operator: BondOperator) -> TwoLevel:
+        """The preconditioner of the same body after some of its bonds changed.
+
+        Falls back to a new one where the unknowns or the moduli are not the same.
+        """
+        return TwoLevel(
+            operator,
+            self.hats.cells,
+            self.degree,
+            self._regularisation,
+            self if same_unknowns(self.operator, operator) else None,
+        )
 
     def _largest_eigenvalue(self) -> float:
         """Upper bound of λ(D⁻¹K)."""
@@ -179,6 +203,27 @@ class TwoLevel(LinearOperator):
 
     def _adjoint(self) -> TwoLevel:
         return self
+
+
+def same_unknowns(one: BondOperator, other: BondOperator) -> bool:
+    """Whether two operators act on the same unknowns with the same moduli."""
+    fixed = (one.fixed is None) == (other.fixed is None)
+    if fixed and one.fixed is not None and other.fixed is not None:
+        fixed = np.array_equal(one.fixed, other.fixed)
+    return bool(
+        fixed
+        and np.array_equal(one.active, other.active)
+        and np.array_equal(one.blocks, other.blocks)
+    )
+
+
+def changed_particles(one: BondOperator, other: BondOperator) -> NDArray[np.int64]:
+    """Positions among the active particles of those whose bond factors differ."""
+    differs = np.zeros(one.bonds.lattice.count, dtype=bool)
+    both = np.union1d(one.bonds.special, other.bonds.special)
+    a, b = one.bonds.factors_of(both), other.bonds.factors_of(both)
+    differs[both] = (a != b).any(axis=0)
+    return np.nonzero(differs[one.active])[0]
 
 
 def _factorise(matrix: sparse.csc_array, regularisation: float):  # type: ignore[no-untyped-def]

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse.linalg import LinearOperator
 
 if TYPE_CHECKING:
     from .scene import Discretisation, Scene
@@ -30,7 +31,9 @@ class Statistics:
     residual : float
         |b − K x| / |b|, evaluated at the end with the operator itself.
     setup_seconds, solve_seconds : float
-        Wall time of the discretisation and of the solver.
+        Wall time of the discretisation (with the preconditioner) and of the solver.
+    peak_memory : int
+        Peak resident memory of the process so far, bytes.
     """
 
     particles: int
@@ -43,6 +46,7 @@ class Statistics:
     residual: float
     setup_seconds: float
     solve_seconds: float
+    peak_memory: int
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values, for JSON."""
@@ -59,11 +63,14 @@ class Solution:
     unknowns : ndarray, shape (components, N)
         u1, u2 and θ Δx, or T.
     statistics : Statistics
+    preconditioner : LinearOperator, optional
+        Kept so that a later solve of the same body may reuse it.
     """
 
     discretisation: Discretisation
     unknowns: Array
     statistics: Statistics
+    preconditioner: LinearOperator | None = field(default=None, repr=False)
 
     @property
     def scene(self) -> Scene:

@@ -16,6 +16,8 @@ here; the kernels themselves do not depend on theirs.
 
 from __future__ import annotations
 
+import resource
+import sys
 from time import perf_counter
 from typing import Literal, get_args
 
@@ -39,6 +41,8 @@ Preconditioner = Literal["auto", "two-level", "block-jacobi"]
 _FACTORISE = 3_000
 # Below this many unknowns block Jacobi needs less time than the set-up of two levels.
 _TWO_LEVEL = 2_000
+# getrusage counts kilobytes, but bytes on macOS.
+_RSS_UNIT = 1 if sys.platform == "darwin" else 1024
 # Krylov recurrences drift from the true residual: restarts from the current solution repair it.
 _RESTARTS = 6
 
@@ -74,7 +78,9 @@ def companion(operator: BondOperator) -> BondOperator:
     return operator.with_moduli(positive)
 
 
-def preconditioner(operator: BondOperator, sign: str, choice: Preconditioner) -> LinearOperator:
+def preconditioner(
+    operator: BondOperator, sign: str, choice: Preconditioner, previous: Solution | None = None
+) -> LinearOperator:
     """The preconditioner of a body: two-level, or block Jacobi where that is cheaper.
 
     Raises
@@ -88,9 +94,11 @@ def preconditioner(operator: BondOperator, sign: str, choice: Preconditioner) ->
         )
     small = operator.shape[0] < _TWO_LEVEL
     jacobi = choice == "block-jacobi" or (choice == "auto" and small)
-    if sign == "indefinite":
-        return BlockJacobi(operator, True) if jacobi else TwoLevel(companion(operator))
-    return BlockJacobi(operator) if jacobi else TwoLevel(operator)
+    if jacobi:
+        return BlockJacobi(operator, absolute=sign == "indefinite")
+    positive = companion(operator) if sign == "indefinite" else operator
+    earlier = None if previous is None else previous.preconditioner
+    return earlier.updated(positive) if isinstance(earlier, TwoLevel) else TwoLevel(positive)
 
 
 def solve(
@@ -98,6 +106,7 @@ def solve(
     tolerance: float = 1e-10,
     max_iterations: int = 20_000,
     preconditioning: Preconditioner = "auto",
+    previous: Solution | None = None,
 ) -> Solution:
     """Solve K x = b for the free unknowns.
 
@@ -110,6 +119,9 @@ def solve(
         Of the Krylov method, all restarts together.
     preconditioning : {"auto", "two-level", "block-jacobi"}
         ``auto`` takes two levels from 2,000 unknowns on.
+    previous : Solution, optional
+        Of the same body with other loads or fewer bonds: the solve starts from its fields, and
+        its preconditioner is reused, brought up to date where bonds have changed.
 
     Returns
     -------
@@ -130,7 +142,9 @@ def solve(
     operator, sign = discretisation.operator, discretisation.stability.sign
     with threadpool_limits(limits=1, user_api="blas"):
         rhs = discretisation.right_hand_side()
+        start = _start(discretisation, previous)
         x, iterations, ready = np.zeros_like(rhs), 0, perf_counter()
+        m: LinearOperator | None = None
         small = operator.shape[0] <= _FACTORISE
         if not rhs.any():
             method = "nothing to solve"
@@ -138,7 +152,7 @@ def solve(
             method = "sparse LU"
             x, iterations = _factorise(operator, rhs, tolerance)
         else:
-            m = preconditioner(operator, sign, preconditioning)
+            m = preconditioner(operator, sign, preconditioning, previous)
             ready = perf_counter()
             name = "two-level" if isinstance(m, TwoLevel) else "block Jacobi"
             krylov, label = _conjugate_gradients, "CG"
@@ -147,7 +161,7 @@ def solve(
                 if discretisation.damaged:
                     krylov, label = _condensed, "CG on condensed displacements"
             method = f"{label}, {name}"
-            x, iterations = krylov(operator, m, rhs, tolerance, max_iterations)
+            x, iterations = krylov(operator, m, rhs, start, tolerance, max_iterations)
         residual = _residual(operator, x, rhs)
     if not residual <= tolerance:
         raise ConvergenceError(
@@ -165,8 +179,21 @@ def solve(
         residual=residual,
         setup_seconds=discretisation.seconds + (ready - begun),
         solve_seconds=perf_counter() - ready,
+        peak_memory=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * _RSS_UNIT,
     )
-    return Solution(discretisation, discretisation.field(x), statistics)
+    return Solution(discretisation, discretisation.field(x), statistics, m)
+
+
+def _start(discretisation: Discretisation, previous: Solution | None) -> Array:
+    """First guess of the active unknowns: those of an earlier solution, or zeros."""
+    operator = discretisation.operator
+    if previous is None or previous.unknowns.shape != discretisation.values.shape:
+        return np.zeros(operator.shape[0])
+    given = np.nan_to_num(previous.unknowns[:, operator.active])
+    if operator.fixed is not None:
+        values = discretisation.values[:, operator.active]
+        given = np.where(operator.fixed, values, given)
+    return given.ravel()
 
 
 def _residual(operator: BondOperator, x: Array, rhs: Array) -> float:
@@ -185,10 +212,15 @@ class _Counter:
 
 
 def _conjugate_gradients(
-    operator: LinearOperator, m: LinearOperator, rhs: Array, tolerance: float, limit: int
+    operator: LinearOperator,
+    m: LinearOperator,
+    rhs: Array,
+    start: Array,
+    tolerance: float,
+    limit: int,
 ) -> tuple[Array, int]:
     guarded = _Guarded(operator)
-    counter, x = _Counter(), np.zeros_like(rhs)
+    counter, x = _Counter(), start.copy()
     for _ in range(_RESTARTS):
         # Solve for the correction: its residual is small, so nothing is lost to cancellation.
         defect = rhs - operator.matvec(x)
@@ -210,9 +242,14 @@ def _conjugate_gradients(
 
 
 def _minres(
-    operator: BondOperator, m: LinearOperator, rhs: Array, tolerance: float, limit: int
+    operator: BondOperator,
+    m: LinearOperator,
+    rhs: Array,
+    start: Array,
+    tolerance: float,
+    limit: int,
 ) -> tuple[Array, int]:
-    counter, x = _Counter(), np.zeros_like(rhs)
+    counter, x = _Counter(), start.copy()
     for _ in range(4 * _RESTARTS):
         defect = rhs - operator.matvec(x)
         size = float(np.linalg.norm(defect) / np.linalg.norm(rhs))
@@ -233,11 +270,21 @@ def _minres(
 
 
 def _condensed(
-    operator: BondOperator, m: LinearOperator, rhs: Array, tolerance: float, limit: int
+    operator: BondOperator,
+    m: LinearOperator,
+    rhs: Array,
+    start: Array,
+    tolerance: float,
+    limit: int,
 ) -> tuple[Array, int]:
     condensed = Condensed(operator)
     u, count = _conjugate_gradients(
-        condensed, condensed.preconditioner(m), condensed.condense(rhs), 0.1 * tolerance, limit
+        condensed,
+        condensed.preconditioner(m),
+        condensed.condense(rhs),
+        start.reshape(3, -1)[:2].ravel(),
+        0.1 * tolerance,
+        limit,
     )
     return condensed.expand(u, rhs), count
 
