@@ -13,7 +13,6 @@ import os
 import tempfile
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +50,6 @@ class Record:
         return isinstance(self.outcome, Failed)
 
 
-@cache
 def source_fingerprint() -> str:
     """Hash of every Python source of the three packages and of the numerical libraries' versions.
 

@@ -74,8 +74,9 @@ def run(
     chosen = list(cases)
     tasks = [(c.name, m.name, n) for c in chosen for m, n in c.plan(level)]
     todo: deque[Task] = deque()
+    current = results.source_fingerprint()
     for task in tasks:
-        if resume and _reusable(folder, task, threads):
+        if resume and _reusable(folder, task, threads, current):
             listen(Event("reused", task))
         else:
             results.stem(folder, *task).with_suffix(".json").unlink(missing_ok=True)
@@ -86,7 +87,7 @@ def run(
     return [results.load(results.stem(folder, *task).with_suffix(".json")) for task in tasks]
 
 
-def _reusable(folder: Path, task: Task, threads: int) -> bool:
+def _reusable(folder: Path, task: Task, threads: int, fingerprint: str) -> bool:
     path = results.stem(folder, *task).with_suffix(".json")
     if not path.exists():
         return False
@@ -94,7 +95,7 @@ def _reusable(folder: Path, task: Task, threads: int) -> bool:
         record = results.load(path)
     except ValueError:
         return False
-    same_code = record.fingerprint == results.source_fingerprint()
+    same_code = record.fingerprint == fingerprint
     return same_code and record.threads == threads and not record.failed
 
 

@@ -41,12 +41,13 @@ def attempt(method: Method, resolution: int) -> Outcome:
         return Failed(type(error).__name__, text, traceback.format_exc(limit=-6))
 
 
-def record(case: Case, method: Method, resolution: int, threads: int) -> results.Record:
-    """Measure and wrap with what the record keeps."""
+def record(
+    case: Case, method: Method, resolution: int, threads: int, fingerprint: str
+) -> results.Record:
+    """Measure and wrap with what the record keeps; see `results.Record`."""
     start = time.perf_counter()
     outcome = attempt(method, resolution)
     wall = time.perf_counter() - start
-    fingerprint = results.source_fingerprint()
     return results.Record(case.name, method.name, resolution, outcome, threads, wall, fingerprint)
 
 
@@ -58,11 +59,12 @@ def serve(connection: Connection, registry: str, folder: Path, threads: int) -> 
     """
     from importlib import import_module
 
+    fingerprint = results.source_fingerprint()
     lookup = import_module(registry).get
     while (task := connection.recv()) is not None:
         name, method_name, resolution = task
         case = lookup(name)
-        done = record(case, case.method(method_name), resolution, threads)
+        done = record(case, case.method(method_name), resolution, threads, fingerprint)
         results.save(done, folder)
         summary = done.outcome.message if isinstance(done.outcome, Failed) else None
         connection.send((task, done.wall_seconds, summary))

@@ -137,7 +137,7 @@ def bond(problem: Problem, calibration: Calibration, n: int) -> Measurement:
         quantities={
             "displacement": relative_l2(solution.displacement[free], displacement[free]),
             "rotation": relative_l2(solution.rotation[free], rotation[free]),
-            "opening": relative_l2(solution.displacement[face, 1], displacement[face, 1]),
+            "upper face": relative_l2(solution.displacement[face], displacement[face]),
             **stress_ahead(problem, points, lambda near: stress[near], n),
         },
         seconds=seconds,
@@ -176,7 +176,7 @@ def fem(problem: Problem, order: int, graded: bool, n: int) -> Measurement:
         quantities={
             "displacement": relative_l2(computed, displacement),
             "rotation": relative_l2(rotation, problem.scale * problem.rotation(x, y)),
-            "opening": relative_l2(computed[face, 1], displacement[face, 1]),
+            "upper face": relative_l2(computed[face], displacement[face]),
             **stress_ahead(problem, points, lambda near: solution.stress_at(points[near])[:, 1], n),
         },
         seconds=adapters.fem_seconds(meshing, solution.seconds),
@@ -228,34 +228,31 @@ def _lines(
     front = upper[(inner[upper, 0] > 0.0) & (inner[upper, 0] <= 0.5)]
     face = upper[inner[upper, 0] < 0.0]
     x = inner[:, 0]
-    dense = np.linspace(0.0, 0.5, 402)[1:]  # the closed form is steep: draw it finely
+    # The closed form is steep: draw it finely, from the first particle on.
+    dense = np.linspace(0.5 * spacing, 1.0, 800)
     row = np.full_like(dense, inner[upper[0], 1])
-    plots.append(
-        LinePlot(
-            "Stress $\\sigma_{22}$ ahead of the tip (Fig. 8)",
-            "$x_1/a$",
-            "$\\sigma_{22}$ (K/√a)",
-            (
-                Curve(
-                    "$x_2 = 0$",
-                    x[front],
-                    stress[free][front],
-                    problem.scale * problem.stress22(dense, row),
-                    dense,
-                ),
-            ),
-            over_resolutions=True,
+    if problem.KI:
+        near = dense <= 0.5
+        exact = problem.scale * problem.stress22(dense[near], row[near])
+        plots.append(
+            LinePlot(
+                "Stress $\\sigma_{22}$ ahead of the tip (Fig. 8)",
+                "$x_1/a$",
+                "$\\sigma_{22}$ (K/√a)",
+                (Curve("$x_2 = 0$", x[front], stress[free][front], exact, dense[near]),),
+                over_resolutions=True,
+            )
         )
-    )
-    opening = computed[free, 1]
-    behind = -2.0 * dense[2.0 * dense < 1.0 - adapters.LAYER_CELLS / n]
-    exact = problem.scale * problem.displacement(behind, row[: len(behind)])[:, 1]
+    # Mode I opens the crack, mode II slides its faces: the component that is not small.
+    i = 1 if problem.KI else 0
+    behind = -dense[dense < 1.0 - adapters.LAYER_CELLS / n]
+    exact = problem.scale * problem.displacement(behind, row[: len(behind)])[:, i]
     plots.append(
         LinePlot(
-            "Displacement $u_2$ along the crack's upper face (Fig. 9)",
+            f"Displacement $u_{i + 1}$ along the crack's upper face (Fig. 9)",
             "$x_1/a$",
-            "$u_2$ (K√a/C)",
-            (Curve("upper face", x[face], opening[face], exact, behind),),
+            f"$u_{i + 1}$ (K√a/C)",
+            (Curve("upper face", x[face], computed[free, i][face], exact, behind),),
             over_resolutions=True,
         )
     )
@@ -263,7 +260,9 @@ def _lines(
 
 
 def _warm_bond(calibration: Calibration) -> None:
-    bond(Problem(1.0, 0.0), calibration, 12)
+    # Below and above 2,000 unknowns the solver takes different ways, each with its kernels.
+    for n in (14, 24):
+        bond(Problem(1.0, 0.0), calibration, n)
 
 
 def _warm_fem(order: int) -> None:
@@ -294,7 +293,7 @@ def methods(problem: Problem) -> tuple[Method, ...]:
 QUANTITIES = {
     "displacement": "relative L2 error of the displacement",
     "rotation": "relative L2 error of the rotation against half the curl (Eq. 85)",
-    "opening": "relative L2 error of u₂ along the upper face",
+    "upper face": "relative L2 error of the displacement along the crack's upper face",
     "stress ahead": "largest relative deviation of σ₂₂ ahead of the tip, 2δ ≤ x₁ ≤ a/2 (Eq. 83)",
 }
 

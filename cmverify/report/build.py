@@ -23,16 +23,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure as a data URI with its caption and a text for those who cannot see it."""
+    """A figure, its caption, and a text for those who cannot see it."""
 
-    uri: str
+    name: str
+    kind: str
+    content: bytes
     caption: str
     alt: str
     wide: bool = False
 
+    @property
+    def uri(self) -> str:
+        """The figure inside the page."""
+        media = {"svg": "image/svg+xml", "png": "image/png"}[self.kind]
+        return f"data:{media};base64,{base64.b64encode(self.content).decode()}"
+
 
 def build(summary: Sequence[CaseResult], info: RunInfo, folder: Path) -> Path:
-    """Write index.html (and the featured fields under fields/) into a folder.
+    """Write index.html into a folder, its figures under figures/ and featured fields under fields/.
 
     Returns
     -------
@@ -66,13 +74,18 @@ def _section(result: CaseResult, folder: Path) -> dict[str, Any]:
     rows = table(result)
     quantities = [q for q in case.quantities if any(q in row.quantities for row in rows)]
     points = precision.points(case, result.outcomes)
+    pictures = _pictures(result, points)
+    for picture in pictures:  # also as files, for papers and slides
+        path = folder / "figures" / f"{case.name}-{picture.name}.{picture.kind}"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(picture.content)
     level_command = f"cmverify run {case.name} --level {{level}} --jobs {{jobs}} --out report"
     return {
         "case": case,
         "result": result,
         "rows": rows,
         "quantities": quantities,
-        "pictures": _pictures(result, points),
+        "pictures": pictures,
         "comparison": _comparison(result, points),
         "downloads": _export(result, folder),
         "command": level_command,
@@ -94,20 +107,24 @@ def _solvers(rows: Sequence[Row]) -> str:
 def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture]:
     from cmverify.report import figures
 
-    case, pictures = result.case, []
+    case, pictures = result.case, list[Picture]()
     curves = [p for p in points if p.error >= 0.0]
     if any(p.seconds > 0 for p in curves):
         quantity = case.quantities[case.primary]
         pictures.append(
             Picture(
-                _svg(figures.convergence_plot(case, curves, case.length)),
+                "convergence",
+                "svg",
+                _render(figures.convergence_plot(case, curves, case.length), "svg"),
                 f"{_capital(quantity)} over spacing or element size.",
                 _spoken(curves, "error"),
             )
         )
         pictures.append(
             Picture(
-                _svg(figures.work_precision_plot(case, curves, case.length)),
+                "work-precision",
+                "svg",
+                _render(figures.work_precision_plot(case, curves, case.length), "svg"),
                 "The same error over the wall time of set-up and solve; "
                 "meshing and JIT compilation are not counted.",
                 _spoken(curves, "seconds"),
@@ -128,12 +145,14 @@ def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture
         caption = f"{mathtext(item.label)}: {where}, particles that are not prescribed."
         alt = f"Maps of {key}: computed, reference and their difference; {where}."
         figure = figures.field_panels(fields, item, case.length)
-        pictures.append(Picture(_png(figure), caption, alt, wide=True))
-    for line, series in figures.lines_of(featured):
+        content = _render(figure, "png")
+        pictures.append(Picture(f"field-{key}", "png", content, caption, alt, wide=True))
+    for index, (line, series) in enumerate(figures.lines_of(featured), 1):
         title = mathtext(line.title)
         caption = f"{title}. {_capital(where)}." if not line.over_resolutions else f"{title}."
         alt = f"Line plot: {title}; markers computed, line closed form."
-        pictures.append(Picture(_svg(figures.line_plot(line, series, case.length)), caption, alt))
+        content = _render(figures.line_plot(line, series, case.length), "svg")
+        pictures.append(Picture(f"line-{index}", "svg", content, caption, alt))
     return pictures
 
 
@@ -172,16 +191,11 @@ def _export(result: CaseResult, folder: Path) -> list[str]:
     return [path.relative_to(folder).as_posix() for path in paths]
 
 
-def _svg(figure: Figure) -> str:
+def _render(figure: Figure, kind: str) -> bytes:
     buffer = io.BytesIO()
-    figure.savefig(buffer, format="svg", metadata={"Date": None})
-    return "data:image/svg+xml;base64," + base64.b64encode(buffer.getvalue()).decode()
-
-
-def _png(figure: Figure) -> str:
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=130)
-    return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode()
+    options: dict[str, Any] = {"dpi": 130} if kind == "png" else {"metadata": {"Date": None}}
+    figure.savefig(buffer, format=kind, **options)
+    return buffer.getvalue()
 
 
 def _spoken(points: Sequence[precision.Point], what: str) -> str:

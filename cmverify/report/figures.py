@@ -21,7 +21,7 @@ from cmverify.precision import Point
 from cmverify.report import style
 
 ROUNDING = 1e-12
-NARROW = (5.4, 3.9)
+NARROW, TALL = (5.4, 3.9), (5.4, 4.5)
 
 
 def field_panels(fields: FieldSet, item: Field, length: str = "a") -> Figure:
@@ -97,10 +97,10 @@ def line_plot(line: LinePlot, series: Mapping[int, LinePlot], length: str = "a")
             x = curve.abscissa if curve.reference_abscissa is None else curve.reference_abscissa
             axis.plot(x, curve.reference, "k-", linewidth=1.1, label=label, zorder=2)
         for index, (label, curve) in enumerate(curves):
-            every = max(1, len(curve.abscissa) // 40)
+            shown = markers(curve.abscissa, curve.computed)
             look = style.of_index(index)
             axis.plot(
-                curve.abscissa[::every], curve.computed[::every], linestyle="none", zorder=3,
+                curve.abscissa[shown], curve.computed[shown], linestyle="none", zorder=3,
                 label=label, markerfacecolor="none", markeredgewidth=1.2, **look,
             )  # fmt: skip
         axis.set_xlabel(line.xlabel)
@@ -110,10 +110,19 @@ def line_plot(line: LinePlot, series: Mapping[int, LinePlot], length: str = "a")
         return figure
 
 
+def markers(x: np.ndarray, y: np.ndarray, count: int = 30) -> np.ndarray:
+    """Indices of about `count` points at equal distances along a curve as it is drawn."""
+    if len(x) <= count:
+        return np.arange(len(x))
+    steps = np.hypot(np.diff(x) / (np.ptp(x) or 1.0), np.diff(y) / (np.ptp(y) or 1.0))
+    length = np.concatenate([[0.0], np.cumsum(steps)])
+    return np.unique(np.searchsorted(length, np.linspace(0.0, length[-1], count)))
+
+
 def convergence_plot(case: Case, points: Iterable[Point], length: str = "a") -> Figure:
     """Error over spacing for every method, with fitted orders and the bounds that are judged."""
     with matplotlib.rc_context(style.RC):
-        figure = Figure(figsize=NARROW)
+        figure = Figure(figsize=TALL)
         axis = figure.subplots()
         for name, series in _by_method(points):
             h = np.array([1.0 / p.resolution for p in series])
@@ -121,8 +130,8 @@ def convergence_plot(case: Case, points: Iterable[Point], length: str = "a") -> 
             look = style.of_method(name)
             fit = fitted_order(h, e, ROUNDING) if len(h) > 1 else None
             exact = bool(np.all(e <= ROUNDING * 10))
-            note = "rounding" if exact else (f"order {fit.order:.2f}" if fit else "")
-            axis.loglog(h, np.maximum(e, 1e-17), label=f"{name}: {note}", **look)
+            note = "rounding" if exact else (f"{fit.order:.2f}" if fit else "")
+            axis.loglog(h, np.maximum(e, 1e-17), label=f"{name}, {note}", **look)
             for check in case.checks:
                 if check.method == name and check.quantity == case.primary and check.at_most:
                     _bounds(axis, [p.resolution for p in series], check.bound_at, look["color"])
@@ -132,14 +141,14 @@ def convergence_plot(case: Case, points: Iterable[Point], length: str = "a") -> 
         axis.set_ylabel(case.quantities[case.primary])
         axis.set_title("Convergence, with fitted order (bars: what must hold)")
         _few_ticks(axis, points)
-        axis.legend(loc="best")
+        _legend_below(axis)
         return figure
 
 
 def work_precision_plot(case: Case, points: Iterable[Point], length: str = "a") -> Figure:
     """Error over wall seconds for every method: down and to the left is better."""
     with matplotlib.rc_context(style.RC):
-        figure = Figure(figsize=NARROW)
+        figure = Figure(figsize=TALL)
         axis = figure.subplots()
         for name, series in _by_method(points):
             seconds = [p.seconds for p in series]
@@ -153,8 +162,17 @@ def work_precision_plot(case: Case, points: Iterable[Point], length: str = "a") 
         sizes = sorted({p.resolution for p in points})
         ladder = ", ".join(f"{length}/{n}" for n in sizes)
         axis.set_title(f"Error against time at {ladder} (lower left is better)")
-        axis.legend(loc="best")
+        _legend_below(axis)
         return figure
+
+
+def _legend_below(axis: Axes) -> None:
+    """Outside, where it hides nothing."""
+    axis.figure.subplots_adjust(bottom=0.265)
+    axis.legend(
+        loc="upper center", bbox_to_anchor=(0.46, -0.155), ncols=3, fontsize=8.2,
+        columnspacing=1.1, handlelength=2.2,
+    )  # fmt: skip
 
 
 def _decades(axis: Axis, unit: str = "") -> None:

@@ -12,12 +12,13 @@ CYCLE = (BLUE, ORANGE, GREEN, PURPLE, SKY, YELLOW)
 MARKERS = ("o", "s", "D", "^", "v", ">")
 
 _KNOWN = {
-    "bond/lattice": (BLUE, "o"),
-    "bond/positive": (ORANGE, "s"),
-    "bond/continuum": (GREY, "D"),
-    "fem/P1": (GREEN, "^"),
-    "fem/P2": (PURPLE, "v"),
-    "fem/P2 graded": (SKY, ">"),
+    # The calibrations may coincide: markers of falling size let all of them be seen.
+    "bond/lattice": (BLUE, "o", 9.0),
+    "bond/positive": (ORANGE, "s", 6.0),
+    "bond/continuum": (GREY, "D", 3.5),
+    "fem/P1": (GREEN, "^", 6.0),
+    "fem/P2": (PURPLE, "v", 6.0),
+    "fem/P2 graded": (SKY, ">", 6.0),
 }
 
 RC: Any = {
@@ -49,14 +50,15 @@ RC: Any = {
 def of_method(name: str) -> dict[str, Any]:
     """Keyword arguments of `plot` for a method: finite elements dashed with open markers."""
     if name in _KNOWN:
-        color, marker = _KNOWN[name]
+        color, marker, size = _KNOWN[name]
     else:
         index = sum(map(ord, name)) % len(CYCLE)
-        color, marker = CYCLE[index], MARKERS[index]
+        color, marker, size = CYCLE[index], MARKERS[index], 6.0
     fem = name.startswith("fem")
     return {
         "color": color,
         "marker": marker,
+        "markersize": size,
         "linestyle": "--" if fem else "-",
         "markerfacecolor": "white" if fem else color,
         "markeredgewidth": 1.4,

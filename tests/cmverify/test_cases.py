@@ -200,3 +200,19 @@ def test_measurements_are_complete_for_the_report():
     assert {"temperature", "flux"} == set(measured.fields.items)
     assert measured.total_seconds > 0
     assert len(measured.lines) == 2
+
+
+@pytest.mark.parametrize("case", [disc.CASES[0], crack_tip.CASES[0]], ids=lambda c: c.name)
+def test_warm_up_compiles_everything_that_is_timed(case):
+    """After the warm-up no kernel gains a signature: nothing is compiled while seconds count."""
+    from solver import kernels
+
+    compiled = [k for k in vars(kernels).values() if hasattr(k, "signatures")]
+    assert compiled
+    for method in case.methods:
+        if method.kind == "bond":
+            method.warm_up()
+            before = [list(kernel.signatures) for kernel in compiled]
+            for n in method.resolutions[Level.QUICK]:
+                method.run(n)
+            assert [list(kernel.signatures) for kernel in compiled] == before

@@ -36,6 +36,7 @@ def test_the_page_holds_everything_it_shows(tmp_path):
     assert "All 4 checks hold" in page
     sources = re.findall(r'(?:src|href)="([^"#]+)"', page)
     outside = [s for s in sources if not s.startswith("data:")]
+    assert len(list((tmp_path / "figures").iterdir())) == 4
     assert all((tmp_path / s).is_file() for s in outside)  # fields to download, nothing else
     assert not re.search(r"https?://", re.sub(r'"data:[^"]*"', "", page))
     assert page.count('src="data:image/svg') == 3  # convergence, error against time, one line
@@ -90,3 +91,13 @@ def test_lattice_values_become_an_image():
 )
 def test_figures_are_printed_with_few_digits(value, text):
     assert number(value) == text
+
+
+def test_markers_follow_the_drawn_curve():
+    x = np.linspace(0.01, 1.0, 500)
+    shown = figures.markers(x, 1.0 / x, count=20)
+    assert shown[0] == 0
+    assert shown[-1] == 499
+    assert np.diff(shown).min() == 1  # every particle where it is steep
+    assert 10 <= len(shown) <= 20
+    assert list(figures.markers(x[:5], x[:5])) == [0, 1, 2, 3, 4]

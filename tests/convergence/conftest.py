@@ -23,7 +23,7 @@ class Measurements:
             key = (case.name, method.name, n)
             keys.append(key)
             if key not in self.records:
-                self.records[key] = worker.record(case, method, n, threads=0)
+                self.records[key] = worker.record(case, method, n, threads=0, fingerprint="")
         (found,) = summary.summarise([case], [self.records[key] for key in keys])
         self.done[case.name] = found
         return found
