@@ -1,72 +1,31 @@
 """Triangular gmsh meshes as plain arrays: discs, rectangles, holes, and cracks as real slits."""
 
-import ctypes.util
 import hashlib
-import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import ModuleType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from references.fem.gmsh_session import (
+    MeshingUnavailableError,
+    load_gmsh,
+    missing_libraries,
+    session,
+)
 from references.fem.slit import boundary_edges, split_along
 
-# gmsh's wheel links against the desktop's libraries, which slim containers lack.
-_DEBIAN_PACKAGES = {
-    "GLU": "libglu1-mesa",
-    "GL": "libgl1",
-    "X11": "libx11-6",
-    "Xcursor": "libxcursor1",
-    "Xext": "libxext6",
-    "Xfixes": "libxfixes3",
-    "Xft": "libxft2",
-    "Xinerama": "libxinerama1",
-    "Xrender": "libxrender1",
-    "fontconfig": "libfontconfig1",
-    "gomp": "libgomp1",
-}
-
-# gmsh has one global session for each process.
-_session_lock = threading.RLock()
-
-
-class MeshingUnavailableError(RuntimeError):
-    """gmsh cannot be loaded; the message names the system library it misses."""
-
-
-def missing_libraries() -> dict[str, str]:
-    """System libraries that gmsh needs and this machine lacks.
-
-    Returns
-    -------
-    dict
-        Library name -> Debian package that brings it; empty if nothing is missing.
-    """
-    return {k: v for k, v in _DEBIAN_PACKAGES.items() if ctypes.util.find_library(k) is None}
-
-
-def load_gmsh() -> ModuleType:
-    """Import gmsh, or say which system library is missing.
-
-    Raises
-    ------
-    MeshingUnavailableError
-        If the module or one of its shared libraries cannot be loaded.
-    """
-    try:
-        import gmsh
-    except (OSError, ImportError) as error:
-        missing = missing_libraries()
-        hint = f" Missing: {', '.join(missing)}; on Debian: apt-get install " + " ".join(
-            missing.values()
-        )
-        raise MeshingUnavailableError(
-            f"gmsh, which makes the finite-element meshes, cannot be loaded: {error}."
-            + (hint if missing else " Install it with: pip install gmsh")
-        ) from error
-    return gmsh
+__all__ = [
+    "Mesh",
+    "MeshingUnavailableError",
+    "Segment",
+    "crack_tip_disc",
+    "disc",
+    "load_gmsh",
+    "missing_libraries",
+    "rectangle",
+]
 
 
 @dataclass(frozen=True)
@@ -133,36 +92,6 @@ def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
-@contextmanager
-def _session(options: Mapping[str, float]) -> Iterator[ModuleType]:
-    """A gmsh model of our own that leaves nothing behind, even inside somebody's session."""
-    gmsh = load_gmsh()
-    with _session_lock:
-        ours = not gmsh.isInitialized()
-        if ours:
-            # no signal handler: that works only in a process's main thread
-            gmsh.initialize(readConfigFiles=False, interruptible=False)
-            previous = None
-        else:
-            previous = gmsh.model.getCurrent()
-        options = {"General.Terminal": 0, "General.NumThreads": 1, **options}
-        before = {name: gmsh.option.getNumber(name) for name in options}
-        try:
-            for name, value in options.items():
-                gmsh.option.setNumber(name, value)
-            gmsh.model.add("cmverify-reference")
-            yield gmsh
-        finally:
-            gmsh.model.setCurrent("cmverify-reference")
-            gmsh.model.remove()
-            for name, value in before.items():
-                gmsh.option.setNumber(name, value)
-            if ours:
-                gmsh.finalize()
-            elif previous:
-                gmsh.model.setCurrent(previous)
-
-
 Segment = tuple[tuple[float, float], tuple[float, float]]
 
 
@@ -194,7 +123,7 @@ def _triangulate(
         "Mesh.Algorithm": 6,
         "Mesh.RandomSeed": 1,
     }
-    with _session(options) as gmsh:
+    with session(options) as gmsh:
         occ = gmsh.model.occ
         surface = draw(gmsh)
         lines: list[tuple[int, int]] = []
