@@ -83,9 +83,7 @@ def test_factors_are_the_same_from_both_ends(seed):
     mask[4, 2:6] = True
     cracks = [Crack((2.0, 5.0), tuple(rng.uniform(3, 8, 2))), Crack((1, 1), (4, 4.5), (7, 3))]
     prescribed = rng.random(mask.sum()) < 0.2
-    bonds = bonds_of(
-        Cells(mask), m=2.5, cracks=cracks, surface="volume", prescribed=prescribed
-    )
+    bonds = bonds_of(Cells(mask), m=2.5, cracks=cracks, surface="volume", prescribed=prescribed)
     factors = pair_factors(bonds)
     for (p, q), factor in factors.items():
         assert factors[q, p] == factor

@@ -27,7 +27,13 @@ HELD = Support.layer(1, displacement=0.0, rotation=0.0)
 
 def plate(*supports, loads=(), material=SOLID, **options):
     return Scene(
-        region=SQUARE, spacing=0.1, m=2, material=material, supports=supports, loads=loads, **options
+        region=SQUARE,
+        spacing=0.1,
+        m=2,
+        material=material,
+        supports=supports,
+        loads=loads,
+        **options,
     ).discretise()
 
 

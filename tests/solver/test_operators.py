@@ -207,9 +207,7 @@ def test_the_product_is_linear_symmetric_and_repeatable(kind):
     kx, ky = operator.matvec(x), operator.matvec(y)
     scale = np.abs(kx).max() * len(x)
     assert x @ ky == pytest.approx(y @ kx, abs=1e-13 * scale)
-    np.testing.assert_allclose(
-        operator.matvec(2 * x - 3 * y), 2 * kx - 3 * ky, atol=1e-13 * scale
-    )
+    np.testing.assert_allclose(operator.matvec(2 * x - 3 * y), 2 * kx - 3 * ky, atol=1e-13 * scale)
     # The grid is reused between products; nothing of one may be left for the next.
     np.testing.assert_array_equal(operator.matvec(x), kx)
     np.testing.assert_array_equal(operator.rmatvec(x), kx)

@@ -126,9 +126,7 @@ def test_a_part_cut_off_must_be_held_itself():
         discretise(POLAR, left, cracks=[ACROSS])
     discretise(POLAR, left, right, cracks=[ACROSS])
     with pytest.raises(SceneError, match=r"no temperature .* the part about \(8, 4\)"):
-        discretise(
-            CONDUCTOR, Support.where(lambda x, y: x < 2, temperature=0.0), cracks=[ACROSS]
-        )
+        discretise(CONDUCTOR, Support.where(lambda x, y: x < 2, temperature=0.0), cracks=[ACROSS])
 
 
 def test_a_crack_that_leaves_a_ligament_leaves_one_part():

@@ -47,7 +47,9 @@ PLY = ElasticTensor([[140, 3, 0], [3, 10, 0], [0, 0, 5]])
 
 
 def operator_of(family, moduli, cells):
-    bonds = Bonds(Lattice(block(cells, cells, family.spacing), family.spacing, family.reach), family)
+    bonds = Bonds(
+        Lattice(block(cells, cells, family.spacing), family.spacing, family.reach), family
+    )
     components = 1 if not isinstance(moduli, ElasticModuli) else 3 if moduli.has_shear else 2
     return BondOperator(bonds, moduli, np.zeros((components, cells**2), dtype=bool))
 
@@ -179,7 +181,9 @@ def test_carbon_epoxy(m):
 def test_refusals_name_the_wave_vector():
     family = Family(3)
     moduli = calibrate(family, ElasticTensor.isotropic(1.0, 0.4, "strain"))
-    with pytest.raises(InadmissibleMaterialError, match="condensed symbol is not positive") as caught:
+    with pytest.raises(
+        InadmissibleMaterialError, match="condensed symbol is not positive"
+    ) as caught:
         require_admissible(family, moduli)
     k = [float(v) for v in re.search(r"\((-?[\d.]+), (-?[\d.]+)\)", str(caught.value)).groups()]
     assert np.linalg.eigvalsh(condensed_symbol(family, moduli, np.array(k)))[0] < 0
@@ -205,7 +209,9 @@ def test_a_negative_bond_can_sink_a_conductor():
     # The paper's two-harmonic law goes negative across the fibres; here far too much so.
     axis = ConductivityTensor.orthotropic(200.0, 1.0, 0.2)
     assert not calibrate(family, axis, "continuum", TwoHarmonic()).non_negative
-    assert assess(family, calibrate(family, axis, "continuum", TwoHarmonic())).sign == "inadmissible"
+    assert (
+        assess(family, calibrate(family, axis, "continuum", TwoHarmonic())).sign == "inadmissible"
+    )
 
 
 @few
@@ -221,7 +227,12 @@ def test_the_margin_is_a_lower_bound_of_every_wave(seed):
 
 @pytest.mark.parametrize(
     ("nu", "plane", "admissible"),
-    [(0.2, "stress", True), (0.45, "stress", True), (0.36, "strain", True), (0.42, "strain", False)],
+    [
+        (0.2, "stress", True),
+        (0.45, "stress", True),
+        (0.36, "strain", True),
+        (0.42, "strain", False),
+    ],
 )
 def test_verdict_agrees_with_the_inertia_of_a_clamped_body(nu, plane, admissible):
     # K has as many negative eigenvalues as rotations with negative stiffness, and no more where

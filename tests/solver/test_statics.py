@@ -265,9 +265,7 @@ def test_the_solution_solves_the_sparse_matrix_too(name):
     x = np.linalg.solve(matrix, parts.right_hand_side())
     wanted = parts.field(x)
     np.testing.assert_allclose(found.unknowns, wanted, atol=1e-9 * np.abs(wanted).max())
-    np.testing.assert_array_equal(
-        found.unknowns[parts.prescribed], parts.values[parts.prescribed]
-    )
+    np.testing.assert_array_equal(found.unknowns[parts.prescribed], parts.values[parts.prescribed])
 
 
 @pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="one thread only")
@@ -310,9 +308,7 @@ def test_units_do_not_matter(name, length, stiffness, size):
         disc(length), 0.1 * length, stiffness, displacement=displacement, rotation=rotation
     )
     wanted = plain.displacement
-    np.testing.assert_allclose(
-        other.displacement / size, wanted, atol=1e-10 * np.abs(wanted).max()
-    )
+    np.testing.assert_allclose(other.displacement / size, wanted, atol=1e-10 * np.abs(wanted).max())
 
 
 # ---- equilibrium ---------------------------------------------------------------------------------------
