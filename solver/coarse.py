@@ -169,6 +169,8 @@ class Hats:
         )
         lookup[self._piece, row + period, column + period] = np.arange(self.count)
         stale = np.ones(self.count, dtype=bool) if known is None else self._stale(changed)
+        if known is not None and not stale.any():
+            return known[1]
         view = _Window(self, stale, h + reach)
         values, starts, ends = [], [], []
         for colour in range(self._pieces_most * period**2):
@@ -245,8 +247,6 @@ class _Window:
         self.image = np.zeros_like(self.fine)
         self.answer = np.zeros_like(self.values)
         row, column = hats._node // hats._width * h, hats._node % hats._width * h
-        if not stale.any():
-            return
         # Everything that a stale hat's image can touch, and the hats that can feel it.
         low = row[stale].min() - margin, column[stale].min() - margin
         high = row[stale].max() + margin, column[stale].max() + margin
