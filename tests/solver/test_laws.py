@@ -93,7 +93,9 @@ def test_cosine_basis():
 def test_fourfold_has_square_symmetry():
     solid = ElasticTensor.isotropic(1.0, 0.3)
     law = Fourfold(6, axis=0.2)
-    for here, there in zip(law.elastic(PSI, solid), law.elastic(PSI + np.pi / 2, solid)):
+    for here, there in zip(
+        law.elastic(PSI, solid), law.elastic(PSI + np.pi / 2, solid), strict=True
+    ):
         even = [0, 1, 3, 4]
         np.testing.assert_allclose(here[even], there[even], atol=1e-13)
 
@@ -109,7 +111,7 @@ def test_exponents_are_even(n):
 def test_cosine_laws_need_a_material_axis():
     solid = ElasticTensor(FIG_7)
     for law in (Cosine(4), Fourfold(4)):
-        with pytest.raises(CalibrationError, match="no.*orthotropic|not\\s+orthotropic"):
+        with pytest.raises(CalibrationError, match="not orthotropic"):
             law.elastic(PSI, solid)
 
 

@@ -44,7 +44,7 @@ def relative(found, wanted):
     return np.abs(found - wanted).max() / np.abs(wanted).max()
 
 
-# ---- the sums, written out again ------------------------------------------------------------
+# ---- the sums, written out again ----------------------------------------------------------------
 
 
 def summed_energy(family, moduli, strain):
@@ -88,7 +88,7 @@ def test_effective_tensor_is_the_energy_of_a_homogeneous_strain(family, seed, st
     )
 
 
-# ---- lattice ----------------------------------------------------------------------------------
+# ---- lattice ------------------------------------------------------------------------------------
 
 
 @exact
@@ -125,7 +125,7 @@ def test_fourfold_law_makes_square_solids_only():
         moduli = calibrate(Family(5), square, calibration, Fourfold(2))
         error = relative(effective_tensor(Family(5), moduli), square.voigt)
         assert error < (1e-12 if calibration == "lattice" else 0.1)
-    with pytest.raises(CalibrationError, match="Fourfold law .* lacks its symmetry"):
+    with pytest.raises(CalibrationError, match=r"Fourfold law .* lacks its symmetry"):
         calibrate(Family(5), ElasticTensor.orthotropic(3.0, 1.0, 0.7, 0.2), "lattice", Fourfold(2))
 
 
@@ -159,7 +159,7 @@ def test_a_mixed_shear_law_is_replaced_unless_it_was_asked_for():
         assert relative(effective_tensor(family, moduli), solid.voigt) < 1e-12
 
 
-# ---- Cauchy's symmetry ------------------------------------------------------------------------
+# ---- Cauchy's symmetry --------------------------------------------------------------------------
 
 
 def test_one_third_in_plane_stress_has_no_shear_stiffness():
@@ -181,7 +181,7 @@ def test_almost_one_third_keeps_its_shear():
     assert moduli.has_shear
 
 
-# ---- the paper's constants (h = 1) -------------------------------------------------------------
+# ---- the paper's constants (h = 1) --------------------------------------------------------------
 
 
 @exact
@@ -287,7 +287,7 @@ def test_continuum_calibration_is_right_as_the_lattice_gets_fine(physics):
     assert errors[1] < errors[0] / 10
 
 
-# ---- positive ----------------------------------------------------------------------------------
+# ---- positive -----------------------------------------------------------------------------------
 
 
 def decoupling(family, moduli):

@@ -29,7 +29,7 @@ def body(mask, kind, seed=0, m=2.0, spacing=0.5, cracks=(), surface="none", fixe
     return BondOperator(bonds, moduli, free(kind, bonds) if fixed is None else fixed(bonds))
 
 
-# ---- one bond by hand -----------------------------------------------------------------------------
+# ---- one bond by hand ---------------------------------------------------------------------------
 
 
 def two_particles(offset, normal, shear, spacing):
@@ -90,7 +90,7 @@ def test_a_bond_wrong_by_one_per_cent_is_seen():
     assert abs(x @ off.matvec(x) / (x @ right.matvec(x)) - 1) > 1e-3
 
 
-# ---- whole bodies against the Hessian ----------------------------------------------------------------
+# ---- whole bodies against the Hessian -----------------------------------------------------------
 
 
 @few
@@ -164,7 +164,7 @@ def test_wide_bodies_with_every_kind_of_particle(kind):
     np.testing.assert_allclose(found, wanted, atol=1e-12 * np.abs(wanted).max())
 
 
-# ---- invariance ------------------------------------------------------------------------------------
+# ---- invariance ---------------------------------------------------------------------------------
 
 
 def rigid_motions(operator):
@@ -235,7 +235,7 @@ def test_products_are_the_same_to_the_last_bit_for_any_number_of_threads(kind):
         np.testing.assert_array_equal(operator.matvec(x), one)
 
 
-# ---- shape and cost ----------------------------------------------------------------------------------
+# ---- shape and cost -----------------------------------------------------------------------------
 
 
 def test_prescribed_particles_are_no_unknowns():

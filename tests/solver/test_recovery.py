@@ -2,13 +2,24 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from solver import ConductivityTensor, Crack, ElasticTensor, Scene, Support, TwoHarmonic, recovery
+from solver import (
+    ConductivityTensor,
+    Crack,
+    ElasticTensor,
+    Family,
+    Scene,
+    Support,
+    TwoHarmonic,
+    recovery,
+)
+from solver.micromoduli import calibrate
 from solver.operators import BondOperator
 from solver.recovery import displacement_gradient
 from solver.solution import Solution
+from solver.stability import assess
 from tests.solver.bodies import DISC, FIG_7, Cells, block, conductivities, exact, few, masks, voigts
 from tests.solver.test_bonds import pair_factors
 
@@ -51,7 +62,7 @@ def tensor_of(strain_stress):
     return np.array([[a, c], [c, b]])
 
 
-# ---- stress ------------------------------------------------------------------------------------------
+# ---- stress -------------------------------------------------------------------------------------
 
 
 @exact
@@ -63,11 +74,9 @@ def tensor_of(strain_stress):
 )
 def test_stress_of_a_homogeneous_strain_is_hooke_s(voigt, gradient, m, rule):
     gradient = np.reshape(gradient, (2, 2))
-    try:
-        found = linear(gradient, material=voigt, m=m, region=block(18, 17, 0.5))
-    except ValueError as error:
-        assert "unstable in bulk" in str(error)
-        return
+    family = Family(m, 0.5)
+    assume(assess(family, calibrate(family, ElasticTensor(voigt))).sign != "inadmissible")
+    found = linear(gradient, material=voigt, m=m, region=block(18, 17, 0.5))
     strain = [gradient[0, 0], gradient[1, 1], gradient[0, 1] + gradient[1, 0]]
     wanted = tensor_of(voigt @ strain)
     reach = found.discretisation.family.reach
@@ -98,7 +107,7 @@ def crossing_sum(found, p, axis):
     directions counts ties by half.
     """
     parts = found.discretisation
-    lattice, family, moduli = parts.lattice, parts.family, parts.moduli
+    family, moduli = parts.family, parts.moduli
     dx, points = family.spacing, parts.lattice.points
     u, theta = found.displacement, found.rotation
     index = {tuple(o): k for k, o in enumerate(family.offsets.tolist())}
@@ -170,7 +179,7 @@ def test_a_strain_wrong_by_one_per_cent_is_seen():
         assert np.abs(off - right)[middle].max() > 5e-3
 
 
-# ---- flux --------------------------------------------------------------------------------------------
+# ---- flux ---------------------------------------------------------------------------------------
 
 
 def conductor(matrix, m=3.0, **options):
@@ -193,7 +202,7 @@ def test_flux_of_a_linear_temperature_is_fourier_s(matrix, gradient, m):
 
 def test_rules_differ_where_the_gradient_does():
     scene = conductor(DISC)
-    x, y = scene.discretise().lattice.points.T
+    x = scene.discretise().lattice.points[:, 0]
     found = imposed(scene, x**2)
     inside = deep(found, 3)
     wanted = -np.outer(2 * x, DISC[0])[inside]
@@ -209,7 +218,7 @@ def test_no_heat_crosses_a_crack():
     assert np.abs(recovery.flux(found)).max() == 0.0
 
 
-# ---- energy ------------------------------------------------------------------------------------------
+# ---- energy -------------------------------------------------------------------------------------
 
 
 @few
@@ -246,7 +255,7 @@ def test_energy_density_of_homogeneous_fields():
     np.testing.assert_allclose(density, 0.5 * gradient @ DISC @ gradient, rtol=1e-11)
 
 
-# ---- gradient ----------------------------------------------------------------------------------------
+# ---- gradient -----------------------------------------------------------------------------------
 
 
 @exact
@@ -280,7 +289,7 @@ def test_slopes_are_not_taken_across_a_crack():
     np.testing.assert_allclose(displacement_gradient(found), wanted, atol=1e-11)
 
 
-# ---- refusals ----------------------------------------------------------------------------------------
+# ---- refusals -----------------------------------------------------------------------------------
 
 
 def test_wrong_physics_and_unknown_rules():

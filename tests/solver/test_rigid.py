@@ -47,7 +47,7 @@ def test_parts_are_what_bonds_join(mask, m, cracked):
     assert len(set(zip(labels.tolist(), wanted.tolist(), strict=True))) == count
 
 
-# ---- which motion ----------------------------------------------------------------------------------
+# ---- which motion -------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("material", [POLAR, CENTRAL])
@@ -113,7 +113,7 @@ def test_a_floating_temperature():
     discretise(CONDUCTOR, Support.where(lambda x, y: (x < 1) & (y < 1), temperature=0.0))
 
 
-# ---- fragments --------------------------------------------------------------------------------------
+# ---- fragments ----------------------------------------------------------------------------------
 
 LEFT = {"displacement": 0.0, "rotation": 0.0}
 ACROSS = Crack((6.0, -1.0), (6.0, 9.0))

@@ -69,7 +69,7 @@ def field_of(voigt, seed=0, degrees=(1, 2)):
     return combine(fields, rng.uniform(-1, 1, len(fields)))
 
 
-# ---- patch tests -------------------------------------------------------------------------------------
+# ---- patch tests --------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("m", [2, 3, 4.5])
@@ -164,7 +164,7 @@ def test_free_rotations_in_the_layer_spoil_the_patch():
     assert 1e-4 < np.linalg.norm(found.displacement[inner] - u) / np.linalg.norm(u) < 0.1
 
 
-# ---- conduction --------------------------------------------------------------------------------------
+# ---- conduction ---------------------------------------------------------------------------------
 
 
 def heat_error(temperature, matrix, loads=(), **options):
@@ -217,7 +217,7 @@ def test_any_quadratic_temperature_with_its_source(matrix, c):
     assert heat_error(temperature, matrix, [Load.source(-sink)]) < 1e-10
 
 
-# ---- methods ------------------------------------------------------------------------------------------
+# ---- methods ------------------------------------------------------------------------------------
 
 
 def test_indefinite_bodies_small_and_large():
@@ -311,7 +311,7 @@ def test_units_do_not_matter(name, length, stiffness, size):
     np.testing.assert_allclose(other.displacement / size, wanted, atol=1e-10 * np.abs(wanted).max())
 
 
-# ---- equilibrium ---------------------------------------------------------------------------------------
+# ---- equilibrium --------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("surface", ["none", "volume"])
@@ -358,7 +358,7 @@ def test_heat_that_enters_leaves():
     assert found.temperature.max() > 0
 
 
-# ---- corner cases and refusals --------------------------------------------------------------------------
+# ---- corner cases and refusals ------------------------------------------------------------------
 
 
 def test_no_load_no_displacement():
@@ -413,7 +413,7 @@ def test_negative_curvature_of_a_conductor_has_a_name(width):
     assert parts.stability.sign == "positive"
     assert np.linalg.eigvalsh(parts.operator.to_csr().toarray())[0] < 0
     assert (parts.operator.block_diagonal.min() > 0) == (width == 2)
-    with pytest.raises(NegativeCurvatureError, match="negative|non-positive"):
+    with pytest.raises(NegativeCurvatureError, match=r"negative|non-positive"):
         scene.solve()
 
 
@@ -432,7 +432,7 @@ def test_negative_curvature_of_a_solid_has_a_name():
     parts = scene.discretise()
     assert parts.stability.sign == "positive"
     assert np.linalg.eigvalsh(parts.operator.to_csr().toarray())[0] < 0
-    with pytest.raises(NegativeCurvatureError, match="negative|non-positive"):
+    with pytest.raises(NegativeCurvatureError, match=r"negative|non-positive"):
         scene.solve()
 
 
