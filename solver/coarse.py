@@ -171,10 +171,17 @@ class Hats:
         stale = np.ones(self.count, dtype=bool) if known is None else self._stale(changed)
         if known is not None and not stale.any():
             return known[1]
-        view = _Window(self, stale, h + reach)
+        # Second pieces exist along cracks only: their probes need no more than that strip.
+        views = [
+            _Window(self, stale & (self._piece == piece), h + reach)
+            for piece in range(self._pieces_most)
+        ]
         values, starts, ends = [], [], []
         for colour in range(self._pieces_most * period**2):
             piece, rest = divmod(colour, period**2)
+            if rest == 0:
+                # Another window: what the last one wrote must not be read.
+                operator.clear()
             colour_row, colour_column = divmod(rest, period)
             lit = (self._piece == piece) & (row % period == colour_row)
             lit &= (column % period == colour_column) & stale
@@ -185,7 +192,7 @@ class Hats:
             source = lookup[piece, row + up + period, column + right + period]
             felt = np.nonzero((source >= 0) & stale[source])[0]
             for b in range(c):
-                answer = view.probe(lit, b)[:, felt]
+                answer = views[piece].probe(lit, b)[:, felt]
                 for a in range(c):
                     values.append(answer[a])
                     starts.append(a * self.count + felt)
@@ -246,6 +253,8 @@ class _Window:
         self.fine = np.zeros((operator.components, len(operator.active)))
         self.image = np.zeros_like(self.fine)
         self.answer = np.zeros_like(self.values)
+        if not stale.any():
+            return
         row, column = hats._node // hats._width * h, hats._node % hats._width * h
         # Everything that a stale hat's image can touch, and the hats that can feel it.
         low = row[stale].min() - margin, column[stale].min() - margin
@@ -258,14 +267,15 @@ class _Window:
         near &= (column >= low[1] - h) & (column <= high[1] + h)
         self.near = np.nonzero(near)[0].astype(np.uint64)
         self.segments = operator.clipped_segments(*low, *high)
-        operator.clear()
 
     def probe(self, lit: NDArray[np.bool_], component: int) -> Array:
         """Pᵀ K P e for the sum e of the lit hats in one component."""
         hats, operator = self.hats, self.hats.operator
         self.values[:] = 0.0
         self.values[component, lit] = 1.0
-        hats.prolong(self.values, self.particles, self.fine)
+        self.fine[:] = 0.0
+        one = slice(component, component + 1)
+        hats.prolong(self.values[one], self.particles, self.fine[one])
         operator.product(self.fine, masked=True, segments=self.segments, out=self.image)
         hats.restrict(self.image, self.near, self.answer)
         return self.answer
