@@ -36,6 +36,7 @@ def run(
     jobs: Annotated[int, typer.Option(help="Worker processes; 0 for one a core.")] = 0,
     out: Folder = Path("report"),
     resume: Annotated[bool, typer.Option("--resume", help="Keep finished measurements.")] = False,
+    timeout: Annotated[float, typer.Option(help="Seconds for a single measurement.")] = 3600.0,
     json: Annotated[Path | None, typer.Option(help="Write all numbers to this file.")] = None,
 ) -> None:
     """Run cases, judge them and write the report. Exit code 0 only if every check holds."""
@@ -56,7 +57,9 @@ def run(
     started, clock = datetime.datetime.now().astimezone(), time.perf_counter()
     total = sum(1 for case in cases for _ in case.plan(level))
     with LiveProgress(console, total) as live:
-        records = runner.run(cases, level, out, jobs=jobs, resume=resume, listen=live.listen)
+        records = runner.run(
+            cases, level, out, jobs=jobs, resume=resume, timeout=timeout, listen=live.listen
+        )
     wall = time.perf_counter() - clock
     info = summary.RunInfo(
         level=str(level),
@@ -66,6 +69,7 @@ def run(
         started=started.isoformat(timespec="seconds"),
         wall_seconds=wall,
         environment=environment.describe().as_dict(),
+        measured=[[r.case, r.method, r.resolution] for r in records],
     )
     summary.save_info(info, out)
     judged = summary.summarise(cases, records)
@@ -195,7 +199,10 @@ def _finished(out: Path):  # type: ignore[no-untyped-def]
 
     try:
         info = summary.load_info(out)
-        return summary.summarise(registry.all_cases(), results.load_all(out)), info
+        own = {tuple(task) for task in info.measured}
+        known = results.load_all(out)
+        records = [r for r in known if (r.case, r.method, r.resolution) in own]
+        return summary.summarise(registry.all_cases(), records), info
     except ValueError as error:
         _refuse(str(error))
 

@@ -52,6 +52,7 @@ def run(
     *,
     jobs: int = 1,
     resume: bool = False,
+    timeout: float = 3600.0,
     listen: Callable[[Event], None] = lambda event: None,
     registry: str = "cmverify.cases.registry",
 ) -> list[results.Record]:
@@ -65,6 +66,8 @@ def run(
         Worker processes; the cores are divided among them.
     resume : bool
         Reuse records in `folder` that the same code measured with the same number of threads.
+    timeout : float
+        Seconds after which a single measurement is given up and fails.
     listen : callable
         Told of every `Event`, in this process.
     registry : str
@@ -83,7 +86,7 @@ def run(
             todo.append(task)
     # The longest tasks first, so that none of them is left running alone at the end.
     todo = deque(sorted(todo, key=lambda task: -task[2]))
-    _drain(todo, folder, min(jobs, max(len(todo), 1)), threads, listen, registry)
+    _drain(todo, folder, min(jobs, max(len(todo), 1)), threads, timeout, listen, registry)
     return [results.load(results.stem(folder, *task).with_suffix(".json")) for task in tasks]
 
 
@@ -104,6 +107,7 @@ def _drain(
     folder: Path,
     jobs: int,
     threads: int,
+    timeout: float,
     listen: Callable[[Event], None],
     registry: str,
 ) -> None:
@@ -116,9 +120,17 @@ def _drain(
                 if worker.task is None and todo:
                     _assign(worker, todo.popleft(), listen)
             busy = [worker for worker in workers if worker.task]
-            ready = wait([worker.pipe for worker in busy])
+            patience = min(worker.since for worker in busy) + timeout - time.perf_counter()
+            ready = wait([worker.pipe for worker in busy], max(patience, 0.0))
             for worker in busy:
-                if worker.pipe in ready and not _collect(worker, folder, threads, listen):
+                late = time.perf_counter() - worker.since > timeout
+                if worker.pipe in ready:
+                    alive = _collect(worker, folder, threads, listen)
+                else:
+                    alive = not late
+                    if late:
+                        _give_up(worker, folder, threads, timeout, listen)
+                if not alive:
                     workers.remove(worker)
     finally:
         for worker in workers:
@@ -154,13 +166,37 @@ def _collect(worker: _Worker, folder: Path, threads: int, listen: Callable[[Even
         worker.process.join(timeout=10)
         seconds = time.perf_counter() - worker.since
         failure = f"the worker process died with exit code {worker.process.exitcode}"
-        outcome = Failed("WorkerDied", failure)
-        fingerprint = results.source_fingerprint()
-        results.save(results.Record(*task, outcome, threads, seconds, fingerprint), folder)
-        listen(Event("failed", task, seconds, failure))
+        _fail(task, Failed("WorkerDied", failure), folder, threads, seconds, listen)
         return False
     listen(Event("failed" if failure else "finished", task, seconds, failure))
     return True
+
+
+def _give_up(
+    worker: _Worker, folder: Path, threads: int, timeout: float, listen: Callable[[Event], None]
+) -> None:
+    """End a worker whose task takes too long."""
+    task = worker.task
+    assert task is not None
+    worker.process.kill()
+    worker.process.join(timeout=10)
+    worker.pipe.close()
+    failure = f"no result after {timeout:g} s"
+    _fail(task, Failed("TimeoutError", failure), folder, threads, timeout, listen)
+
+
+def _fail(
+    task: Task,
+    outcome: Failed,
+    folder: Path,
+    threads: int,
+    seconds: float,
+    listen: Callable[[Event], None],
+) -> None:
+    """Record a failure on behalf of a worker that cannot."""
+    fingerprint = results.source_fingerprint()
+    results.save(results.Record(*task, outcome, threads, seconds, fingerprint), folder)
+    listen(Event("failed", task, seconds, outcome.message))
 
 
 def _stop(worker: _Worker) -> None:

@@ -17,7 +17,10 @@ from cmverify.verdict import Failed, Outcome, Verdict, judge, unjudged
 
 @dataclass(frozen=True)
 class RunInfo:
-    """How a run was made, so that it can be made again."""
+    """How a run was made, so that it can be made again.
+
+    `measured` lists its (case, method, resolution): its folder may hold records of others.
+    """
 
     level: str
     jobs: int
@@ -26,6 +29,7 @@ class RunInfo:
     started: str
     wall_seconds: float
     environment: dict[str, Any] = field(default_factory=dict)
+    measured: list[list[Any]] = field(default_factory=list)
 
 
 @dataclass(frozen=True)

@@ -49,6 +49,12 @@ def test_a_worker_that_dies_costs_only_its_task(tmp_path):
     assert kinds.count("finished") == 2
 
 
+def test_a_measurement_that_takes_too_long_is_given_up(tmp_path):
+    records, kinds = run(["sleeping"], tmp_path, jobs=1, timeout=2.0)
+    assert [r.outcome.error for r in records] == ["TimeoutError"] * 2
+    assert kinds == ["started", "failed"] * 2  # the killed worker was replaced
+
+
 def test_resume_reuses_what_the_same_code_measured(tmp_path):
     run(["toy"], tmp_path)
     results.stem(tmp_path, "toy", "bond/trapezium", 20).with_suffix(".json").unlink()

@@ -53,6 +53,11 @@ def naps(n: int) -> Measurement:
     return trapezium(n)
 
 
+def sleeps(n: int) -> Measurement:
+    time.sleep(60.0)
+    return trapezium(n)
+
+
 def toy(name="toy", run=trapezium, tags=("toys",), checks=None) -> Case:
     method = Method("bond/trapezium", "bond", run, LADDER)
     return Case(
@@ -81,6 +86,7 @@ CASES = {
     "raising": toy("raising", raises),
     "dying": toy("dying", dies),
     "napping": toy("napping", naps),
+    "sleeping": toy("sleeping", sleeps, tags=()),
 }
 
 
