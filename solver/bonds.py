@@ -107,7 +107,7 @@ class Bonds:
         if surface == "volume":
             volume = np.full(lattice.count, full_volume(family))
             physical = self.short[free[self.short]]
-            missing = (family.fraction[:, None] * ~self.exist(physical)).sum(axis=0)
+            missing = (family.fraction[:, None] * self._open(physical, free)).sum(axis=0)
             volume[physical] -= missing
             volume[cut_at] -= (family.fraction[:, None] * cut).sum(axis=0)
             deficient = volume < full_volume(family) * (1 - 1e-12)
@@ -137,6 +137,26 @@ class Bonds:
         rows, columns = (axis[particles] for axis in self.lattice.cells)
         dx, dy = self.family.offsets.T
         return self.lattice.mask[rows + dy[:, None], columns + dx[:, None]]
+
+    def _open(self, particles: Indices, free: Mask) -> Mask:
+        """Which neighbours the particles lack at a physical edge, like `exist`.
+
+        An empty cell that is no nearer to a free particle than to a prescribed one lies beyond a
+        support, thin as its layer may be, and is no surface.
+        """
+        lattice = self.lattice
+        rows, columns = lattice.cells
+        beyond = np.zeros(lattice.shape, dtype=bool)
+        if not free.all():
+            away = []
+            for kind in (free, ~free):
+                others = np.ones(lattice.shape, dtype=bool)
+                others[rows[kind], columns[kind]] = False
+                away.append(distance_transform_edt(others))
+            beyond = ~lattice.mask & (away[1] <= away[0] * (1 + _TIE))
+        dx, dy = self.family.offsets.T
+        there = rows[particles] + dy[:, None], columns[particles] + dx[:, None]
+        return ~lattice.mask[there] & ~beyond[there]
 
     def _both_ends(self, broken: Mask | None) -> tuple[Indices, Mask]:
         """Particles with broken bonds and which, from the half offsets of one end."""
@@ -171,7 +191,8 @@ class Bonds:
                 piece_start, piece_end = np.array(piece)
                 near = self._near(piece_start, piece_end, reach)
                 start = lattice.points[near][None, :, :]
-                tip = (k == 0, k == len(crack.segments) - 1)
+                last = len(crack.segments) - 1
+                tip = (k == 0 and not crack.closed, k == last and not crack.closed)
                 end = start + bonds[:, None, :]
                 cut = crosses(start, end, piece_start, piece_end, tip, lattice.spacing)
                 cut &= self.exist(near)

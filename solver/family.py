@@ -92,6 +92,11 @@ class Family:
                 f"unknown area rule {self.area_rule!r}; known: {', '.join(get_args(AreaRule))}"
             )
         object.__setattr__(self, "influence", influence(self.influence))
+        if not self.size:
+            raise ValueError(
+                f"the family is empty: at m = {self.m:g} the influence function "
+                f"{self.influence.name!r} leaves no neighbour any weight"
+            )
 
     @cached_property
     def _selected(self) -> tuple[NDArray[np.int64], Array]:

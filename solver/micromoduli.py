@@ -175,7 +175,8 @@ def _solve(system: Array, target: Array, what: str) -> Array:
     if error > _EXACT * np.abs(target).max():
         raise CalibrationError(
             f"no {what} has the moments of this tensor (relative error of the best fit "
-            f"{error / np.abs(target).max():.1e}): the law lacks its symmetry"
+            f"{error / np.abs(target).max():.1e}): the law lacks its symmetry, or "
+            f"the family has too few bond directions (a larger m has more)"
         )
     return coefficients
 

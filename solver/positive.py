@@ -65,11 +65,19 @@ def closest(moments: Array, target: Array, wanted: Array) -> Array | None:
             free[np.argmax(gain)] = True
             continue
         break
-    x = np.maximum(x, 0.0)
-    # One correction on the support takes the moments to rounding.
-    support = x > 0
-    part = a[:, support]
-    x[support] += np.linalg.lstsq(part, d - part @ x[support], rcond=1e-13)[0]
+    else:
+        # Moments on the very edge of what is possible leave the multipliers undetermined, and
+        # the exchange goes round in circles: keep the starting point, close to the optimum.
+        x = start
+    # Corrections on the support take the moments to rounding. Entries of rounding size are zeros:
+    # corrected, they could turn negative.
+    for _ in range(size):
+        x = np.where(x > 1e-12 * scale, x, 0.0)
+        support = x > 0
+        part = a[:, support]
+        x[support] += np.linalg.lstsq(part, d - part @ x[support], rcond=1e-13)[0]
+        if x.min() >= 0:
+            break
     if np.abs(a @ x - d).max() > 1e-10 * np.abs(d).max() or x.min() < 0:
         return None
     return x

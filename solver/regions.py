@@ -18,6 +18,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 
+# Points nearer to a polygon's edge than this share of its size lie on it.
+_EDGE = 1e-9
+
 
 class Region(ABC):
     """A bounded part of the plane."""
@@ -87,7 +90,12 @@ class Polygon(Region):
         return float(x0), float(y0), float(x1), float(y1)
 
     def contains(self, x: Array, y: Array) -> NDArray[np.bool_]:
-        return shapely.contains_xy(self.shape, x, y)
+        # Half open, as pixels are: a point exactly on an edge counts if the body lies to its
+        # right (or above it, on a level edge). A body of whole cells whose edges run through
+        # particle centres then has as many particles as cells, whatever the rounding.
+        x0, y0, x1, y1 = self.bounds
+        nudge = _EDGE * max(x1 - x0, y1 - y0)
+        return shapely.contains_xy(self.shape, x + nudge, y + nudge)
 
     def edge_distance(self, x: Array, y: Array) -> Array:
         return shapely.distance(self.shape.exterior, shapely.points(x, y))
@@ -172,6 +180,11 @@ class Crack:
         if np.any(np.linalg.norm(np.diff(array, axis=0), axis=1) == 0):
             raise ValueError(f"a crack with a piece of no length: {points}")
         object.__setattr__(self, "points", tuple((float(x), float(y)) for x, y in array))
+
+    @property
+    def closed(self) -> bool:
+        """Whether it ends where it starts: then it has no tips."""
+        return self.points[0] == self.points[-1]
 
     @property
     def segments(self) -> tuple[tuple[Point, Point], ...]:

@@ -25,7 +25,13 @@ def parts(bonds: Bonds) -> tuple[int, NDArray[np.int32]]:
     """Number of connected parts and the part of every particle, shape (N,)."""
     lattice = bonds.lattice
     if not len(bonds.special) or bonds.factors.min() > 0:
-        _, count = ndimage.label(lattice.mask, structure=np.ones((3, 3)))
+        # Neighbours that the family joins directly; more bonds can only join more.
+        nearest = np.zeros((3, 3))
+        nearest[1, 1] = 1
+        for dx, dy in bonds.family.offsets:
+            if max(abs(dx), abs(dy)) == 1:
+                nearest[1 + dy, 1 + dx] = 1
+        _, count = ndimage.label(lattice.mask, structure=nearest)
         if count == 1:
             return 1, np.zeros(lattice.count, dtype=np.int32)
     numbers = lattice.number()

@@ -108,8 +108,8 @@ class Scene:
         wanted = {"force", "couple"} if self.elastic else {"source"}
         for load in self.loads:
             if load.kind not in wanted:
-                physics = "elastic" if self.elastic else "conductive"
-                raise SceneError(f"a {load.kind} does not act on an {physics} body")
+                body = "an elastic body" if self.elastic else "a conductive body"
+                raise SceneError(f"a {load.kind} does not act on {body}")
 
     @property
     def elastic(self) -> bool:

@@ -216,8 +216,15 @@ def assess(family: Family, moduli: Moduli, count: int = 48) -> Stability:
     worst = k[np.argmin(values)]
     margin = float(values.min())
     if margin > _SINGULAR:
+
+        def in_zone(q: Array) -> float:
+            # The margin compares with the solid along k itself: a search that strays out of the
+            # zone would compare a long wave with the solid along a reciprocal lattice vector.
+            q = (q + np.pi) % (2 * np.pi) - np.pi
+            return float(margins(family, moduli, q)) if q @ q > 1e-6 else 1e300
+
         found = minimize(
-            lambda q: float(margins(family, moduli, q)) if q @ q > 1e-6 else 1e300,
+            in_zone,
             worst,
             method="Nelder-Mead",
             options={"initial_simplex": worst + np.pi / count * np.array([[0, 0], [1, 0], [0, 1]])},

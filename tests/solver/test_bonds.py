@@ -178,3 +178,11 @@ def test_nothing_is_stored_for_bulk_bonds():
     assert near.all()
     assert len(cracked.special) < 2 * 4 * (25 + 4)
     assert bonds.nbytes < cracked.nbytes < 100_000
+
+
+def test_a_closed_crack_cuts_an_island_off():
+    family = Family(2)
+    loop = Crack((6, 3), (8, 3), (8, 5), (6, 5), (6, 3))
+    bonds = Bonds(Lattice(block(10, 8), 1.0, family.reach), family, [loop])
+    # Where the loop closes is a joint, not two tips.
+    assert ((5.5, 2.5), (6.5, 3.5)) in cut_pairs(bonds)

@@ -120,3 +120,9 @@ def test_bonds_without_influence_are_left_out():
 def test_bad_families(arguments, message):
     with pytest.raises(ValueError, match=message):
         Family(*arguments)
+
+
+def test_a_family_without_bonds_is_refused():
+    # The conical Λ vanishes at the horizon: at m = 1 it leaves no neighbour.
+    with pytest.raises(ValueError, match="no neighbour"):
+        Family(1, 1.0, "full", "conical")

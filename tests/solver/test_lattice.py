@@ -75,3 +75,9 @@ def test_a_region_without_particles():
 def test_a_grid_that_nobody_meant():
     with pytest.raises(SceneError, match="makes a grid of"):
         Lattice(disc(1.0), 1e-6, 2)
+
+
+def test_centres_on_an_edge_are_treated_alike_at_every_spacing():
+    # 24.5/49 rounds below 1/2, the other two do not.
+    for n in (47, 49, 51):
+        assert Lattice(rectangle(1.0, 1.0), 1 / n, 2).count == n**2

@@ -385,3 +385,15 @@ def test_carbon_epoxy_has_positive_moduli():
 def test_unknown_calibration():
     with pytest.raises(ValueError, match="unknown calibration 'exact'"):
         calibrate(Family(3), ElasticTensor(FIG_7), "exact")
+
+
+def test_one_third_in_plane_stress_has_positive_moduli():
+    for family in (Family(3), Family(5, 0.01), Family(4.5, 1.0, "exact")):
+        moduli = calibrate(family, ElasticTensor.isotropic(E=2e11, nu=1 / 3), "positive")
+        assert not moduli.has_shear
+
+
+def test_the_disc_conductor_has_positive_moduli_at_two_cells():
+    # [[5, 2], [2, 1]] = (1, 0)(1, 0)ᵀ + (2, 1)(2, 1)ᵀ: two bonds of the family make it.
+    moduli = calibrate(Family(2), ConductivityTensor(DISC), "positive")
+    assert relative(effective_tensor(Family(2), moduli), DISC) < 1e-12

@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
+from solver import ConductivityTensor, Family
+from solver.micromoduli import ConductiveModuli, calibrate, effective_tensor
 from solver.positive import closest, feasible
 from tests.solver.bodies import exact
 
@@ -64,3 +66,22 @@ def test_empty_sets():
 def test_rows_without_entries_are_no_condition():
     moments = np.array([[1.0, 1.0], [0.0, 0.0]])
     assert closest(moments, np.array([1.0, 0.0]), np.zeros(2)) == pytest.approx([0.5, 0.5])
+
+
+def test_a_point_that_already_fits_stays():
+    _, moments, wanted = problem(3, 4, 20, signed=False)
+    np.testing.assert_allclose(closest(moments, moments @ wanted, wanted), wanted, atol=1e-12)
+
+
+@exact
+@given(st.integers(0, 10**6), st.sampled_from([2, 3, 4, 5]))
+def test_moments_on_the_edge_of_the_possible(seed, m):
+    # Tensors made of two or three bonds have hardly another representation.
+    rng, family = np.random.default_rng(seed), Family(m)
+    half = family.size // 2
+    k = np.zeros(half)
+    k[rng.choice(half, 3, replace=False)] = rng.uniform(0.1, 1, 3)
+    matrix = effective_tensor(family, ConductiveModuli(np.tile(k, 2)))
+    assume(np.linalg.eigvalsh(matrix)[0] > 1e-6 * matrix.max())
+    found = calibrate(family, ConductivityTensor(matrix), "positive")
+    np.testing.assert_allclose(effective_tensor(family, found), matrix, atol=1e-10 * matrix.max())

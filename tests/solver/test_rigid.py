@@ -152,3 +152,10 @@ def test_bodies_apart():
     # A gap narrower than the horizon is bridged by bonds: nonlocal contact, as the model has it.
     mask[:, 6:9] = True
     discretise(POLAR, left, region=Cells(mask))
+
+
+def test_bodies_that_touch_at_a_corner_without_a_bond_are_two():
+    mask = np.zeros((4, 4), bool)
+    mask[:2, :2] = mask[2:, 2:] = True
+    family = Family(1, 1.0, "full")  # four neighbours, no diagonals
+    assert parts(Bonds(Lattice(Cells(mask), 1.0, 1), family))[0] == 2

@@ -249,3 +249,22 @@ def test_verdict_agrees_with_the_inertia_of_a_clamped_body(nu, plane, admissible
     assert (negative == rotations) == admissible
     assert negative >= rotations
     assert (assess(family, moduli).sign != "inadmissible") == admissible
+
+
+@pytest.mark.parametrize(
+    ("material", "law"),
+    [
+        (ConductivityTensor(DISC), None),
+        (ConductivityTensor(DISC), TwoHarmonic()),
+        (ElasticTensor(FIG_7), None),
+        (ElasticTensor.isotropic(1.0, 0.45), None),
+        (ElasticTensor.isotropic(1.0, 0.36, "strain"), None),
+    ],
+)
+def test_the_margin_is_taken_at_the_wave_vector_that_is_named(material, law):
+    family = Family(5)
+    moduli = calibrate(family, material, "lattice", law)
+    found = assess(family, moduli)
+    k = np.array(found.wave_vector)
+    assert np.abs(k).max() <= np.pi
+    assert margins(family, moduli, k) == pytest.approx(found.margin, rel=1e-9)

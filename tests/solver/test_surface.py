@@ -32,15 +32,35 @@ def volumes(bonds, held, judge):
     lattice, family = bonds.lattice, bonds.family
     number, (rows, columns) = lattice.number(), lattice.cells
     found = np.ones(lattice.count)
+
+    def beyond_support(row, column):
+        away = np.hypot(rows - row, columns - column)
+        return held.any() and (held.all() or away[held].min() <= away[~held].min() * (1 + 1e-9))
+
     for p in range(lattice.count):
         for (dx, dy), share in zip(family.offsets, family.fraction, strict=True):
             q = number[rows[p] + dy, columns[p] + dx]
             if q < 0:
                 # Beyond a wholly prescribed particle the edge is no surface.
-                found[p] += share * held[p]
+                beyond = held[p] or beyond_support(rows[p] + dy, columns[p] + dx)
+                found[p] += share * beyond
             else:
                 found[p] += share * judge(p, q)
     return found
+
+
+def test_a_thin_layer_is_no_surface_either():
+    # One prescribed column at the right: the particles behind it lack neighbours, but beyond a
+    # support; with the left edge free, only there are bonds stiffened.
+    family = Family(3)
+    lattice = Lattice(block(20, 20), 1.0, family.reach)
+    held = lattice.points[:, 0] > 19
+    bonds = Bonds(lattice, family, (), "volume", held)
+    middle = np.abs(lattice.points[:, 1] - 10) < 1
+    factors = {p: f for (p, _), f in pair_factors(bonds).items()}
+    right = [p for p in factors if middle[p] and lattice.points[p, 0] > 12]
+    assert not right or all(factors[p] == pytest.approx(1.0) for p in right)
+    assert any(f > 1.1 for f in factors.values())
 
 
 @few

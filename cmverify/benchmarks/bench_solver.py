@@ -1,0 +1,47 @@
+"""The static solve: seconds, iterations and peak memory of the two-level method."""
+
+from __future__ import annotations
+
+from time import process_time
+
+
+class CrackTip:
+    """Crack tip, mode I, to 1e-8; the set-up of the preconditioner is part of it."""
+
+    params = (60, 120)
+    param_names = ("a over spacing",)
+    timeout = 120.0
+
+    def setup(self, resolution: int) -> None:
+        """Compile, and keep the scene."""
+        from cmverify.speed.measure import crack_tip
+
+        self.scene = crack_tip(resolution)
+        self.scene.solve(1e-8)
+
+    def time_solve(self, resolution: int) -> None:
+        """Seconds from the scene to the solution."""
+        self.scene.solve(1e-8)
+
+    def peakmem_solve(self, resolution: int) -> None:
+        """Peak resident memory."""
+        self.scene.solve(1e-8)
+
+    def track_iterations(self, resolution: int) -> int:
+        """Conjugate-gradient iterations."""
+        return self.scene.solve(1e-8).statistics.iterations
+
+    def track_products_a_solve(self, resolution: int) -> float:
+        """CPU seconds of a solve over those of one product: what the method costs."""
+        operator = self.scene.discretise().operator
+        x = operator.matvec(operator.block_diagonal[:, 0, :].T.ravel())
+        begun = process_time()
+        for _ in range(20):
+            operator.matvec(x)
+        product = (process_time() - begun) / 20
+        begun = process_time()
+        self.scene.solve(1e-8)
+        return (process_time() - begun) / product
+
+    track_iterations.unit = "iterations"  # type: ignore[attr-defined]
+    track_products_a_solve.unit = "products"  # type: ignore[attr-defined]
