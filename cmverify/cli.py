@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from cmverify.case import Level
+from cmverify.speed.command import speed
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -17,6 +18,9 @@ app = typer.Typer(
 
 Names = Annotated[list[str] | None, typer.Argument(metavar="[CASE]...", help="Cases or tags.")]
 Folder = Annotated[Path, typer.Option("--out", help="Folder of the run and its report.")]
+
+
+app.command()(speed)
 
 
 @app.command("list")

@@ -396,7 +396,7 @@ def growth(resolutions: tuple[int, ...], tolerance: float = 1e-8) -> list[Row]:
     for resolution in resolutions:
         scene = crack_tip(resolution)
         begun = perf_counter()
-        solution = solve(scene.discretise(), tolerance)
+        solution = solve(scene.discretise(), tolerance, preconditioning="two-level")
         wall = perf_counter() - begun
         free = ~solution.prescribed
         x, y = solution.points[free].T
