@@ -1,0 +1,117 @@
+"""The stored references: what they are, with which arguments they are made, what they cite."""
+
+from references.generators import (
+    MATERIALS,
+    crack_tip_samples,
+    heated_disc_samples,
+    kink_factors,
+    pulled_plate_with_hole,
+    square_modes,
+    stress_intensity_table,
+    tetrachiral_clamped,
+    tetrachiral_free,
+)
+from references.provenance import Reference
+
+_PAPER = "V. Diana, Anisotropic Continuum-Molecular Models, Arch. Comput. Methods Eng. (2022)"
+
+
+def _kinks(material: str) -> Reference:
+    degrees = [float(w) for w in range(-100, 101, 5)]
+    if material in ("isotropic", "silicon"):  # mirror-symmetric in the crack's plane
+        degrees = [w for w in degrees if w >= 0]
+    return Reference(
+        f"kinks-{material}",
+        f"Stress intensity factors of a short kink, {material}",
+        "M. Amestoy, J. B. Leblond, Int. J. Solids Struct. 29 (1992) 465 (isotropic); tensors: "
+        + _PAPER,
+        kink_factors,
+        {"material": material, "degrees": degrees},
+        spot={"degrees": degrees[4:5]},
+        axis="degrees",
+    )
+
+
+def _intensities(geometry: str, ratios: list[float], citation: str) -> Reference:
+    return Reference(
+        f"stress-intensity-{geometry}",
+        f"Stress intensity factors, {geometry} crack, five materials",
+        citation,
+        stress_intensity_table,
+        {
+            "geometry": geometry,
+            "ratios": ratios,
+            "materials": list(MATERIALS),
+            "elements": 24,
+        },
+        spot={"materials": ["anisotropic"], "ratios": ratios[1:2]},
+        axis="ratios",
+    )
+
+
+def catalogue() -> dict[str, Reference]:
+    """All stored references by name."""
+    entries = [
+        Reference(
+            "tetrachiral-free",
+            "Tetrachiral lattice, free frequencies: blocks, meshed interfaces, continuum (rad/s)",
+            _PAPER + ", Sect. 2.4",
+            tetrachiral_free,
+            {"cells": [5, 9, 13, 25, 49], "count": 10},
+            spot={"cells": [9, 25]},
+            axis="cells",
+        ),
+        Reference(
+            "tetrachiral-clamped",
+            "Tetrachiral lattice, outer ring held, with the trend in the number of cells (rad/s)",
+            _PAPER + ", Sect. 2.4",
+            tetrachiral_clamped,
+            {"cells": [9, 13, 25, 49, 97], "count": 10},
+            spot={"cells": [9, 25]},
+            axis="cells",
+        ),
+        _intensities(
+            "centre", [0.2, 0.3, 0.4, 0.5, 0.6], "M. Isida, Int. J. Fract. Mech. 7 (1971) 301"
+        ),
+        _intensities(
+            "edge",
+            [0.2, 0.3, 0.4, 0.5, 0.6],
+            "A. C. Kaya, F. Erdogan, Q. Appl. Math. 45 (1987) 105",
+        ),
+        _intensities("compact", [0.3, 0.4, 0.5, 0.6, 0.7], "ASTM E399"),
+        _kinks("isotropic"),
+        _kinks("silicon"),
+        _kinks("anisotropic"),
+        Reference(
+            "crack-tip-disc",
+            "Displacement of the crack-tip disc at the particles of spacing a/30",
+            _PAPER + ", Sect. 2.3.1",
+            crack_tip_samples,
+            {"material": "anisotropic", "spacing": 1 / 30, "size": 0.03},
+        ),
+        Reference(
+            "heated-disc",
+            "Temperature exp(x − 2y) cos y in the disc at the particles of spacing a/25",
+            _PAPER + ", Sect. 4.3.1",
+            heated_disc_samples,
+            {"spacing": 1 / 25, "size": 0.02},
+        ),
+        Reference(
+            "square-modes",
+            "Free and clamped frequencies of a fully anisotropic unit square",
+            _PAPER + ", Sect. 2.3.1 (tensor)",
+            square_modes,
+            {"material": "anisotropic", "count": 10},
+        ),
+        *(
+            Reference(
+                f"plate-with-hole-{material}",
+                f"Square plate with a hole pulled along axis 2, {material}",
+                _PAPER + ", Sect. 3 (tensor)",
+                pulled_plate_with_hole,
+                {"material": material, "half_width": 4.0, "size": 0.01},
+            )
+            for material in ("isotropic", "bone", "anisotropic")
+        ),
+    ]
+    return {entry.name: entry for entry in entries}

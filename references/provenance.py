@@ -1,0 +1,240 @@
+"""Stored references with their provenance: what made them, with which versions, how exact they are.
+
+Each reference is a pair of files, ``name.npz`` with the numbers and ``name.json`` with the record:
+generator and arguments, versions, meshes (size, hash), element order, estimated error, citation,
+and the SHA-256 of the numbers and of the record itself. Whatever does not match is refused.
+"""
+
+import hashlib
+import importlib.metadata
+import io
+import json
+import platform
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from references.fem.mesh import Mesh
+
+DATA = Path(__file__).with_name("data")
+_PACKAGES = ("numpy", "scipy", "scikit-fem", "gmsh")
+# same mesh, same code: what other rounding can do to a solution
+_ROUNDING = 1e-7
+
+
+class DamagedReferenceError(ValueError):
+    """A stored reference is missing, truncated, altered or incomplete; the message names it."""
+
+
+@dataclass(frozen=True)
+class Generated:
+    """What a generator returns.
+
+    Attributes
+    ----------
+    arrays : dict of str to array
+    errors : dict of str to float
+        Estimated error of each array over its largest magnitude, by self-convergence; 0 for
+        arguments such as angles or points.
+    meshes : tuple of Mesh
+        Their sizes and hashes go into the record.
+    order : int or None
+        Of the elements.
+    """
+
+    arrays: Mapping[str, NDArray]
+    errors: Mapping[str, float]
+    meshes: tuple[Mesh, ...] = ()
+    order: int | None = None
+
+    def __post_init__(self) -> None:
+        if set(self.arrays) != set(self.errors):
+            raise ValueError("every array of a reference needs an estimated error")
+        for name, array in self.arrays.items():
+            if not np.isfinite(array).all():
+                raise ValueError(f"the array {name!r} of a reference is not finite")
+
+
+@dataclass(frozen=True)
+class Reference:
+    """One entry of the catalogue.
+
+    Attributes
+    ----------
+    name : str
+        Also the name of its files.
+    title, citation : str
+    generator : callable
+        ``generator(**arguments)`` -> Generated.
+    arguments : dict
+        Plain numbers, strings and lists, written into the record.
+    spot : dict or None
+        Arguments that replace some of ``arguments`` when ``check`` regenerates: a small part of
+        an expensive reference. Empty: all of it is regenerated. None: checksums only.
+    axis : str or None
+        Array whose entries number the rows of all the others: tells which rows a spot check has.
+    """
+
+    name: str
+    title: str
+    citation: str
+    generator: Callable[..., Generated]
+    arguments: Mapping[str, Any]
+    spot: Mapping[str, Any] | None = field(default_factory=dict)
+    axis: str | None = None
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A reference as loaded: ``arrays`` and the ``record`` of how they came about."""
+
+    name: str
+    arrays: Mapping[str, NDArray]
+    record: Mapping[str, Any]
+
+    def __getitem__(self, name: str) -> NDArray:
+        return self.arrays[name]
+
+    def error(self, name: str) -> float:
+        """Estimated error of an array over its largest magnitude."""
+        return float(self.record["estimated_error"][name])
+
+
+def _sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def _record_hash(record: Mapping[str, Any]) -> str:
+    rest = {k: v for k, v in record.items() if k != "record_sha256"}
+    return _sha256(json.dumps(rest, sort_keys=True, ensure_ascii=False).encode())
+
+
+def versions() -> dict[str, str]:
+    """Of Python and the packages that a reference depends on."""
+    return {
+        "python": platform.python_version(),
+        **{name: importlib.metadata.version(name) for name in _PACKAGES},
+    }
+
+
+def build(reference: Reference, folder: Path = DATA) -> Stored:
+    """Generate a reference and store it, numbers first, each file replaced as a whole."""
+    made = reference.generator(**reference.arguments)
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, **{k: np.asarray(v) for k, v in made.arrays.items()})  # type: ignore[arg-type]
+    content = buffer.getvalue()
+    record: dict[str, Any] = {
+        "name": reference.name,
+        "title": reference.title,
+        "citation": reference.citation,
+        "generator": f"{reference.generator.__module__}.{reference.generator.__qualname__}",
+        "arguments": json.loads(json.dumps(reference.arguments)),
+        "versions": versions(),
+        "element_order": made.order,
+        "meshes": [
+            {
+                "size": mesh.size,
+                "points": len(mesh.points),
+                "triangles": len(mesh.triangles),
+                "sha256": mesh.sha256,
+            }
+            for mesh in made.meshes
+        ],
+        "estimated_error": {k: float(f"{v:.3g}") for k, v in made.errors.items()},
+        "bytes": len(content),
+        "sha256": _sha256(content),
+    }
+    record["record_sha256"] = _record_hash(record)
+    folder.mkdir(parents=True, exist_ok=True)
+    text = json.dumps(record, indent=1, ensure_ascii=False) + "\n"
+    for suffix, data in ((".npz", content), (".json", text.encode())):
+        unfinished = folder / (reference.name + suffix + ".part")
+        unfinished.write_bytes(data)
+        unfinished.replace(folder / (reference.name + suffix))
+    return load(reference.name, folder)
+
+
+def load(name: str, folder: Path = DATA) -> Stored:
+    """Read a stored reference and verify it.
+
+    Raises
+    ------
+    DamagedReferenceError
+        If a file is missing, truncated or altered, or the record incomplete; names the file.
+    """
+    numbers, about = folder / f"{name}.npz", folder / f"{name}.json"
+    rebuild = f"restore it or run: python -m references build {name}"
+    for path in (about, numbers):
+        if not path.is_file():
+            raise DamagedReferenceError(f"{path}: the file is missing; {rebuild}")
+    try:
+        record = json.loads(about.read_text(encoding="utf-8"))
+        expected = {key: record[key] for key in ("sha256", "record_sha256", "bytes")}
+    except (ValueError, KeyError, TypeError) as error:
+        raise DamagedReferenceError(
+            f"{about}: not a complete record ({error}); {rebuild}"
+        ) from error
+    if _record_hash(record) != expected["record_sha256"]:
+        raise DamagedReferenceError(f"{about}: the record was altered; {rebuild}")
+    content = numbers.read_bytes()
+    if len(content) < expected["bytes"]:
+        raise DamagedReferenceError(
+            f"{numbers}: truncated, {len(content)} of {expected['bytes']} bytes; {rebuild}"
+        )
+    if _sha256(content) != expected["sha256"]:
+        raise DamagedReferenceError(
+            f"{numbers}: altered, its SHA-256 is not the one in {about.name}; {rebuild}"
+        )
+    with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+        arrays = {key: archive[key] for key in archive.files}
+    return Stored(name, arrays, record)
+
+
+def regenerate_and_compare(reference: Reference, stored: Stored) -> float:
+    """Run the generator again (its spot check) and compare.
+
+    Arrays must agree to rounding if the meshes are the same, bit for bit, else (another gmsh)
+    within three times the estimated error.
+
+    Returns
+    -------
+    float
+        Largest difference found, over the arrays' largest magnitudes.
+
+    Raises
+    ------
+    DamagedReferenceError
+        If an array is missing or differs by more than allowed.
+    """
+    if reference.spot is None:
+        raise ValueError(f"{reference.name} has no quick way to be regenerated")
+    made = reference.generator(**{**reference.arguments, **reference.spot})
+    known = {mesh["sha256"] for mesh in stored.record["meshes"]}
+    same_meshes = all(mesh.sha256 in known for mesh in made.meshes)
+    rows: Any = slice(None)
+    if reference.axis and reference.spot:
+        axis = stored.arrays[reference.axis].tolist()
+        rows = [axis.index(value) for value in made.arrays[reference.axis].tolist()]
+    worst = 0.0
+    for name, array in made.arrays.items():
+        if name not in stored.arrays:
+            raise DamagedReferenceError(f"{stored.name}: the stored file has no array {name!r}")
+        old = stored.arrays[name][rows]
+        if old.shape != np.shape(array):
+            raise DamagedReferenceError(
+                f"{stored.name}: {name!r} has shape {old.shape}, regenerated {np.shape(array)}"
+            )
+        scale = np.abs(stored.arrays[name]).max(initial=0.0) or 1.0
+        difference = float(np.abs(array - old).max(initial=0.0) / scale)
+        allowed = _ROUNDING if same_meshes else max(_ROUNDING, 3 * stored.error(name))
+        if not difference <= allowed:
+            raise DamagedReferenceError(
+                f"{stored.name}: {name!r} regenerates with a difference of {difference:.2e},"
+                f" {allowed:.1e} allowed"
+            )
+        worst = max(worst, difference)
+    return worst
