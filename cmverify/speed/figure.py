@@ -14,6 +14,7 @@ def draw(tables: dict[str, list[dict[str, Any]]], path: Path) -> None:
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import NullFormatter, ScalarFormatter
 
     with plt.rc_context(style.RC):
         figure, axes = plt.subplots(1, 3, figsize=(13.5, 4.4), layout="constrained")
@@ -35,6 +36,9 @@ def draw(tables: dict[str, list[dict[str, Any]]], path: Path) -> None:
             title="set-up and solve of the crack tip to 1e-8",
             ylim=(0.5 * min(cost), 2.5 * max(cost)),
         )
+        axes[2].xaxis.set_minor_formatter(NullFormatter())
+        axes[2].yaxis.set_major_formatter(ScalarFormatter())
+        axes[2].yaxis.set_minor_formatter(ScalarFormatter())
         figure.savefig(path, dpi=130)
         plt.close(figure)
 
