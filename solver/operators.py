@@ -85,11 +85,12 @@ class BondOperator(LinearOperator):
         half = bonds.family.size // 2
         row = bonds.lattice.shape[1]
         dx, dy = bonds.family.offsets[:half].T
-        self._steps = (dy * row + dx).astype(np.uint64)
-        self._half_blocks = np.ascontiguousarray(self.blocks[:half])
-        self._bulk = self._diagonal_sums(np.ones((bonds.family.size, 1)))[:, 0]
+        #: What the kernels read, see `solver.kernels`.
+        self.steps = (dy * row + dx).astype(np.uint64)
+        self.half_blocks = np.ascontiguousarray(self.blocks[:half])
+        self.bulk = self._diagonal_sums(np.ones((bonds.family.size, 1)))[:, 0]
         #: Runs of particles of one kind, as the kernels read them.
-        self.segments, self._diagonal = self._layout()
+        self.segments, self.diagonal = self._layout()
 
     def _layout(self) -> tuple[NDArray[np.uint64], Array]:
         """Segments of the active particles and the diagonal blocks that differ from the bulk's."""
@@ -103,7 +104,7 @@ class BondOperator(LinearOperator):
             # Their blocks differ for whoever inverts them.
             kind[self.fixed.any(axis=0) & (kind == _BULK)] = _TRUNCATED
         own = kind != _BULK
-        diagonal = np.empty((len(self._bulk), int(own.sum())))
+        diagonal = np.empty((len(self.bulk), int(own.sum())))
         truncated = self.active[kind == _TRUNCATED]
         diagonal[:, kind[own] == _TRUNCATED] = self._diagonal_sums(
             bonds.exist(truncated).astype(np.float64)
@@ -190,10 +191,10 @@ class BondOperator(LinearOperator):
         self._kernel(
             grid,
             self.segments if segments is None else segments,
-            self._steps,
-            self._half_blocks,
-            self._bulk,
-            self._diagonal,
+            self.steps,
+            self.half_blocks,
+            self.bulk,
+            self.diagonal,
             self.bonds.factors,
             out,
         )
@@ -227,7 +228,7 @@ class BondOperator(LinearOperator):
     @property
     def identity_scale(self) -> float:
         """Diagonal entry of the identity rows: the size of the bulk's."""
-        return float(np.abs(self._bulk).max())
+        return float(np.abs(self.bulk).max())
 
     @cached_property
     def block_diagonal(self) -> Array:
@@ -239,7 +240,7 @@ class BondOperator(LinearOperator):
     @property
     def bulk_block(self) -> Array:
         """Diagonal block of a bulk particle, shape (components, components)."""
-        return self._as_blocks(self._bulk[:, None])[0]
+        return self._as_blocks(self.bulk[:, None])[0]
 
     @cached_property
     def own(self) -> NDArray[np.int64]:
@@ -250,7 +251,7 @@ class BondOperator(LinearOperator):
     @property
     def own_blocks(self) -> Array:
         """Their diagonal blocks, shape (len(own), components, components)."""
-        blocks = self._as_blocks(self._diagonal)
+        blocks = self._as_blocks(self.diagonal)
         if self.fixed is not None:
             where, component = np.nonzero(self.fixed.T[self.own])
             blocks[where, component, :] = blocks[where, :, component] = 0.0
@@ -276,7 +277,7 @@ class BondOperator(LinearOperator):
     @property
     def nbytes(self) -> int:
         """Memory of what a product reads besides the fields."""
-        arrays = (self.segments, self._steps, self._half_blocks, self._bulk, self._diagonal)
+        arrays = (self.segments, self.steps, self.half_blocks, self.bulk, self.diagonal)
         return sum(a.nbytes for a in arrays) + self.bonds.nbytes
 
     def to_csr(self) -> sparse.csr_array:

@@ -42,19 +42,19 @@ _REGULARISATION = 1e-11
 
 
 class BlockJacobi(LinearOperator):
-    """Inverse of the diagonal blocks, or of their absolute values (for MINRES).
+    """Inverse of the diagonal blocks.
 
     Raises
     ------
     NegativeCurvatureError
-        If a block is not positive definite and `absolute` is not asked for.
+        If a block is not positive definite.
     """
 
-    def __init__(self, operator: BondOperator, absolute: bool = False) -> None:
+    def __init__(self, operator: BondOperator) -> None:
         super().__init__(operator.dtype, operator.shape)
         self.operator = operator
-        self._bulk = _inverse(operator, operator.bulk_block[None], absolute, None)[:, :, 0]
-        self._own = _inverse(operator, operator.own_blocks, absolute, operator.own)
+        self._bulk = _inverse(operator, operator.bulk_block[None], None)[:, :, 0]
+        self._own = _inverse(operator, operator.own_blocks, operator.own)
 
     def _matvec(self, x: Array) -> Array:
         c = self.operator.components
@@ -67,15 +67,13 @@ class BlockJacobi(LinearOperator):
         return self
 
 
-def _inverse(
-    operator: BondOperator, blocks: Array, absolute: bool, which: NDArray[np.int64] | None
-) -> Array:
+def _inverse(operator: BondOperator, blocks: Array, which: NDArray[np.int64] | None) -> Array:
     """Inverses of symmetric blocks (n, c, c) as (c, c, n)."""
     if not len(blocks):
         return np.zeros((operator.components, operator.components, 0))
     values, vectors = np.linalg.eigh(blocks)
     relative = values[:, 0] / np.abs(values).max(axis=1)
-    if not absolute and relative.min() <= 1e-12:
+    if relative.min() <= 1e-12:
         where = "a bulk particle"
         if which is not None:
             x, y = operator.bonds.lattice.points[operator.active[which[np.argmin(relative)]]]
@@ -84,7 +82,6 @@ def _inverse(
             f"{where} is a mechanism: the stiffness of its own bonds is singular or negative "
             f"(too few bonds are left). Hold it or remove it"
         )
-    values = np.maximum(np.abs(values), 1e-12 * np.abs(values).max(axis=1, keepdims=True))
     # einsum keeps a fixed order of sums, whatever BLAS does.
     return np.ascontiguousarray(np.einsum("pij,pj,pkj->ikp", vectors, 1.0 / values, vectors))
 

@@ -4,11 +4,10 @@ positive, central (no rotations)
     Conjugate gradients (SciPy) with the two-level preconditioner. A direction of non-positive
     energy, as a damaged body may have, ends the solve with a named error.
 indefinite (negative shear stiffness, positive condensed symbol)
-    A saddle in the rotations. Sparse factorisation for small bodies, MINRES with the two-level
-    preconditioner of a positive companion body for large ones (condensing the rotations needs
-    an inner solve in every product). A *damaged* body of this kind may have lost the positive
-    condensed energy of its bulk, which only conjugate gradients on the condensed displacements
-    notice: it is solved that way.
+    A saddle in the rotations, solved by the same method on the displacements alone, rotations
+    condensed out matrix-free, preconditioned by a positive companion body. MINRES on the whole
+    saddle would take about as long, but could not notice what a bounded or damaged body may
+    have although its bulk has not: a direction of negative condensed energy.
 
 BLAS reductions change in the last bits with its thread count, so BLAS is pinned to one thread
 here; the kernels themselves do not depend on theirs.
@@ -23,11 +22,11 @@ from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse.linalg import LinearOperator, cg, minres, splu
+from scipy.sparse.linalg import LinearOperator
 from threadpoolctl import threadpool_limits
 
-from .condensed import Condensed
-from .errors import ConvergenceError, NegativeCurvatureError
+from .errors import ConvergenceError
+from .krylov import Task, condensed_gradients, conjugate_gradients
 from .micromoduli import ElasticModuli
 from .operators import BondOperator
 from .preconditioner import BlockJacobi, TwoLevel
@@ -37,40 +36,17 @@ from .solution import Solution, Statistics
 Array = NDArray[np.float64]
 Preconditioner = Literal["auto", "two-level", "block-jacobi"]
 
-# Largest saddle point that is factorised; beyond this MINRES is faster and far smaller.
-_FACTORISE = 3_000
 # Below this many unknowns block Jacobi needs less time than the set-up of two levels.
 _TWO_LEVEL = 2_000
 # getrusage counts kilobytes, but bytes on macOS.
 _RSS_UNIT = 1 if sys.platform == "darwin" else 1024
-# Krylov recurrences drift from the true residual: restarts from the current solution repair it.
-_RESTARTS = 6
-
-
-class _Guarded(LinearOperator):
-    """The operator, watching for directions of non-positive energy."""
-
-    def __init__(self, operator: LinearOperator) -> None:
-        super().__init__(operator.dtype, operator.shape)
-        self.operator = operator
-
-    def _matvec(self, x: Array) -> Array:
-        y = self.operator.matvec(x)
-        energy = float(x @ y)
-        if energy <= 0.0 and float(x @ x) > 0.0:
-            raise NegativeCurvatureError(
-                f"the body has a direction of non-positive energy (x·Kx = {energy:.3g}): damage "
-                f"or a cut family has taken more stiffness than the bulk can spare. Use "
-                f"calibration='positive', another m, or hold the loose part"
-            )
-        return y
 
 
 def companion(operator: BondOperator) -> BondOperator:
     """The same body with every negative modulus turned positive.
 
-    Its symbol is equivalent to the absolute value of the indefinite one, wave by wave, so that a
-    preconditioner built on it leaves eigenvalues in two fixed intervals, whatever the spacing.
+    Its condensed symbol is equivalent to that of the indefinite one, wave by wave, so that
+    iterations do not grow as the lattice is refined.
     """
     moduli = operator.moduli
     assert isinstance(moduli, ElasticModuli)
@@ -94,9 +70,9 @@ def preconditioner(
         )
     small = operator.shape[0] < _TWO_LEVEL
     jacobi = choice == "block-jacobi" or (choice == "auto" and small)
-    if jacobi:
-        return BlockJacobi(operator, absolute=sign == "indefinite")
     positive = companion(operator) if sign == "indefinite" else operator
+    if jacobi:
+        return BlockJacobi(positive)
     earlier = None if previous is None else previous.preconditioner
     return earlier.updated(positive) if isinstance(earlier, TwoLevel) else TwoLevel(positive)
 
@@ -145,23 +121,19 @@ def solve(
         start = _start(discretisation, previous)
         x, iterations, ready = np.zeros_like(rhs), 0, perf_counter()
         m: LinearOperator | None = None
-        small = operator.shape[0] <= _FACTORISE
         if not rhs.any():
             method = "nothing to solve"
-        elif sign == "indefinite" and small and not discretisation.damaged:
-            method = "sparse LU"
-            x, iterations = _factorise(operator, rhs, tolerance)
         else:
             m = preconditioner(operator, sign, preconditioning, previous)
             ready = perf_counter()
+            task = Task(rhs, start, tolerance, max_iterations)
             name = "two-level" if isinstance(m, TwoLevel) else "block Jacobi"
-            krylov, label = _conjugate_gradients, "CG"
             if sign == "indefinite":
-                krylov, label = _minres, "MINRES"
-                if discretisation.damaged:
-                    krylov, label = _condensed, "CG on condensed displacements"
-            method = f"{label}, {name}"
-            x, iterations = krylov(operator, m, rhs, start, tolerance, max_iterations)
+                x, iterations = condensed_gradients(operator, m, task)
+                method = f"CG on condensed displacements, {name}"
+            else:
+                x, iterations = conjugate_gradients(operator, m, task)
+                method = f"CG, {name}"
         residual = _residual(operator, x, rhs)
     if not residual <= tolerance:
         raise ConvergenceError(
@@ -199,102 +171,3 @@ def _start(discretisation: Discretisation, previous: Solution | None) -> Array:
 def _residual(operator: BondOperator, x: Array, rhs: Array) -> float:
     size = float(np.linalg.norm(rhs))
     return float(np.linalg.norm(rhs - operator.matvec(x))) / size if size else 0.0
-
-
-class _Counter:
-    """Counts iterations as SciPy's callback."""
-
-    def __init__(self) -> None:
-        self.count = 0
-
-    def __call__(self, _: Array) -> None:
-        self.count += 1
-
-
-def _conjugate_gradients(
-    operator: LinearOperator,
-    m: LinearOperator,
-    rhs: Array,
-    start: Array,
-    tolerance: float,
-    limit: int,
-) -> tuple[Array, int]:
-    guarded = _Guarded(operator)
-    counter, x = _Counter(), start.copy()
-    for _ in range(_RESTARTS):
-        # Solve for the correction: its residual is small, so nothing is lost to cancellation.
-        defect = rhs - operator.matvec(x)
-        size = float(np.linalg.norm(defect) / np.linalg.norm(rhs))
-        left = limit - counter.count
-        if size <= tolerance or left <= 0:
-            break
-        step, _info = cg(
-            guarded,
-            defect,
-            rtol=0.5 * tolerance / size,
-            atol=0.0,
-            maxiter=left,
-            M=m,
-            callback=counter,
-        )
-        x = x + step
-    return x, counter.count
-
-
-def _minres(
-    operator: BondOperator,
-    m: LinearOperator,
-    rhs: Array,
-    start: Array,
-    tolerance: float,
-    limit: int,
-) -> tuple[Array, int]:
-    counter, x = _Counter(), start.copy()
-    for _ in range(4 * _RESTARTS):
-        defect = rhs - operator.matvec(x)
-        size = float(np.linalg.norm(defect) / np.linalg.norm(rhs))
-        left = limit - counter.count
-        if size <= tolerance or left <= 0:
-            break
-        # SciPy measures the residual against |A||x|, which is larger: ask for less each time.
-        step, _info = minres(
-            operator,
-            defect,
-            rtol=max(1e-3 * tolerance / size, 1e-12),
-            maxiter=left,
-            M=m,
-            callback=counter,
-        )
-        x = x + step
-    return x, counter.count
-
-
-def _condensed(
-    operator: BondOperator,
-    m: LinearOperator,
-    rhs: Array,
-    start: Array,
-    tolerance: float,
-    limit: int,
-) -> tuple[Array, int]:
-    condensed = Condensed(operator)
-    u, count = _conjugate_gradients(
-        condensed,
-        condensed.preconditioner(m),
-        condensed.condense(rhs),
-        start.reshape(3, -1)[:2].ravel(),
-        0.1 * tolerance,
-        limit,
-    )
-    return condensed.expand(u, rhs), count
-
-
-def _factorise(operator: BondOperator, rhs: Array, tolerance: float) -> tuple[Array, int]:
-    factors = splu(operator.to_csr().tocsc())
-    x = factors.solve(rhs)
-    for step in range(1, _RESTARTS):
-        defect = rhs - operator.matvec(x)
-        if np.linalg.norm(defect) <= 0.1 * tolerance * np.linalg.norm(rhs):
-            return x, step
-        x = x + factors.solve(defect)
-    return x, _RESTARTS

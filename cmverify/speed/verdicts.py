@@ -64,15 +64,5 @@ def of_growth(rows: list[Row]) -> list[Verdict]:
 
 
 def of_scenes(rows: list[Row]) -> list[Verdict]:
-    """Iterations on other static scenes: twenty is the goal for positive operators.
-
-    MINRES counts twice per mode of both signs; forty is the same goal there.
-    """
-    return [
-        _at_most(
-            f"{row.name}: iterations",
-            row.values["iterations"],
-            40 if "MINRES" in row.values["method"] else 20,
-        )
-        for row in rows
-    ]
+    """Iterations on other static scenes: twenty is the goal."""
+    return [_at_most(f"{row.name}: iterations", row.values["iterations"], 20) for row in rows]

@@ -71,8 +71,8 @@ def test_iterations_stay_flat_on_the_crack_tip() -> None:
     assert plain.statistics.iterations > 10 * counts[1]
 
 
-@pytest.mark.parametrize(("nu", "most"), [(0.35, 30), (0.49, 45)])
-def test_minres_stays_flat_where_the_operator_is_indefinite(nu: float, most: int) -> None:
+@pytest.mark.parametrize(("nu", "most"), [(0.35, 14), (0.49, 22)])
+def test_iterations_stay_flat_where_the_operator_is_indefinite(nu: float, most: int) -> None:
     counts = []
     for resolution in (40, 80):
         scene = Scene(
@@ -82,10 +82,10 @@ def test_minres_stays_flat_where_the_operator_is_indefinite(nu: float, most: int
         )  # fmt: skip
         statistics = scene.solve(1e-8).statistics
         assert statistics.sign == "indefinite"
-        assert statistics.method == "MINRES, two-level"
+        assert statistics.method == "CG on condensed displacements, two-level"
         counts.append(statistics.iterations)
     assert max(counts) <= most
-    assert abs(counts[1] - counts[0]) <= 5
+    assert abs(counts[1] - counts[0]) <= 2
 
 
 def test_reuse_after_bonds_broke_gives_the_same_solution() -> None:
