@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -99,12 +99,16 @@ def condensed_gradients(
 ) -> tuple[Array, int]:
     """Solve an indefinite body by `conjugate_gradients` on its displacements alone."""
     condensed = Condensed(operator)
-    inner = replace(
-        task,
-        rhs=condensed.condense(task.rhs),
-        start=task.start.reshape(3, -1)[:2].ravel(),
-        # The condensed load may be larger than the load; measured factors stay below three.
-        tolerance=0.2 * task.tolerance,
-    )
-    u, count = conjugate_gradients(condensed, condensed.preconditioner(preconditioner), inner)
-    return condensed.expand(u, task.rhs), count
+    inverse, rhs = condensed.preconditioner(preconditioner), condensed.condense(task.rhs)
+    x, count, wanted = task.start, 0, task.tolerance
+    for _ in range(_RESTARTS):
+        displacement = x.reshape(3, -1)[:2].ravel()
+        part = Task(rhs, displacement, wanted, task.limit - count)
+        u, more = conjugate_gradients(condensed, inverse, part)
+        x, count = condensed.expand(u, task.rhs), count + more
+        # The condensed load may be larger than the load: then more is asked for.
+        left = np.linalg.norm(task.rhs - operator.matvec(x)) / np.linalg.norm(task.rhs)
+        if left <= task.tolerance or count >= task.limit:
+            break
+        wanted *= 0.5 * task.tolerance / float(left)
+    return x, count

@@ -29,10 +29,11 @@ from .operators import BondOperator
 
 Array = NDArray[np.float64]
 
-# Coarse nodes every eight cells: with two products of smoothing a good balance of set-up and
-# iterations (measured from 4 to 12 cells, benchmarks/preconditioner). Larger lattices coarsen
-# more, so that the factorisation stays small beside the products.
-_CELLS = 8
+# Distance of coarse nodes by unknowns a particle: with two products of smoothing the best
+# balance of set-up and iterations from 4 to 12 cells. In conduction the coarse matrix is cheap
+# and anisotropy stronger, so nodes are closer. Larger lattices coarsen more, so that the
+# factorisation stays small beside the products.
+_CELLS = {1: 6, 2: 8, 3: 8}
 _LARGEST_COARSE = 60_000
 # Ratio of the ends of the interval on which the polynomial is small: shorter waves than the
 # coarse grid resolves.
@@ -95,8 +96,8 @@ class TwoLevel(LinearOperator):
         Symmetric positive definite. For an indefinite body hand over its companion, see
         `solver.statics`.
     cells : int, optional
-        Distance of the coarse nodes in lattice cells; by default 8, more for lattices whose
-        coarse matrix would exceed 60,000 unknowns.
+        Distance of the coarse nodes in lattice cells; by default 8 (6 in conduction), more for
+        lattices whose coarse matrix would exceed 60,000 unknowns.
     degree : int
         Chebyshev degree, products a sweep; one V-cycle costs 2 × degree products.
     regularisation : float
@@ -125,7 +126,7 @@ class TwoLevel(LinearOperator):
         self.jacobi = BlockJacobi(operator)
         if cells is None:
             largest = np.sqrt(operator.shape[0] / _LARGEST_COARSE)
-            cells = max(_CELLS, int(np.ceil(largest)))
+            cells = max(_CELLS[operator.components], int(np.ceil(largest)))
         self.hats = Hats(operator, cells)
         self._regularisation = regularisation
         known = changed = None

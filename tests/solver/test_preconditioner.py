@@ -123,8 +123,8 @@ def test_conduction_takes_two_levels_too() -> None:
     statistics = scene.solve(1e-8).statistics
     assert statistics.method == "CG, two-level"
     # Conductivity ratio 34: point smoothing is weak along the well-conducting direction, so the
-    # count is higher than in elasticity; measured 21.
-    assert statistics.iterations <= 30
+    # count is higher than in elasticity; the goal is twenty, 17 were measured.
+    assert statistics.iterations <= 20
 
 
 def test_unknown_preconditioner_is_refused() -> None:
