@@ -158,8 +158,8 @@ def fem(problem: Problem, order: int, graded: bool, n: int) -> Measurement:
     from references.fem import elasticity, mesh
 
     size = order / n
-    build = partial(mesh.crack_tip_disc, tip_size=size / 20 if graded else None)
-    body, meshing = adapters.timed_mesh(build, size)
+    options = {"tip_size": size / 20} if graded else {}
+    body, meshing = adapters.timed_mesh(mesh.crack_tip_disc, size, **options)
     solution = elasticity.solve_elasticity(
         body, problem.voigt, displacement=problem.displacement, order=order
     )
