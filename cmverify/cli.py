@@ -9,6 +9,7 @@ import typer
 
 from cmverify.case import Level
 from cmverify.speed.command import speed
+from cmverify.stability.command import stability
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -21,6 +22,7 @@ Folder = Annotated[Path, typer.Option("--out", help="Folder of the run and its r
 
 
 app.command()(speed)
+app.command()(stability)
 
 
 @app.command("list")
