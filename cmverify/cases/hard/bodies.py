@@ -125,8 +125,7 @@ def measure(solid: Solid, n: int) -> Measurement:
     return Measurement(
         statistics[0].unknowns,
         found,
-        adapters.solver_seconds(statistics[0]),
-        {**adapters.solver_statistics(statistics[0]), "sign": statistics[0].sign},
+        statistics={**adapters.solver_statistics(statistics[0]), "sign": statistics[0].sign},
     )
 
 

@@ -79,7 +79,7 @@ def solve(body: Body, n: int) -> Measurement:
         "iterations": float(s.iterations),
         "residual": s.residual,
     }
-    return Measurement(s.unknowns, found, adapters.solver_seconds(s), adapters.solver_statistics(s))
+    return Measurement(s.unknowns, found, statistics=adapters.solver_statistics(s))
 
 
 def _isotropic(poisson: float, plane: Any = "stress") -> Callable[[], Material]:

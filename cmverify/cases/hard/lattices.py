@@ -53,7 +53,7 @@ def fit(setting: Setting, n: int) -> Measurement:
     found = bodies.errors(solution, exact)
     s = solution.statistics
     found |= {"iterations": float(s.iterations), "residual": s.residual, "margin": s.margin}
-    return Measurement(s.unknowns, found, adapters.solver_seconds(s), adapters.solver_statistics(s))
+    return Measurement(s.unknowns, found, statistics=adapters.solver_statistics(s))
 
 
 SETTINGS = (
@@ -117,8 +117,7 @@ def rescale(units: Units, n: int) -> Measurement:
             "residual": s.residual,
             "iterations": float(s.iterations),
         },
-        adapters.solver_seconds(s),
-        adapters.solver_statistics(s),
+        statistics=adapters.solver_statistics(s),
     )
 
 

@@ -123,7 +123,7 @@ def treat(body: Loose, n: int) -> Measurement:
     )
     found["energy"] = broken.energy_defect(solution)
     found["residual"], found["iterations"] = s.residual, float(s.iterations)
-    return Measurement(s.unknowns, found, adapters.solver_seconds(s), adapters.solver_statistics(s))
+    return Measurement(s.unknowns, found, statistics=adapters.solver_statistics(s))
 
 
 @cache

@@ -90,5 +90,6 @@ CASES = (
         primary="quartic",
         featured=ROWS[0].method.name,
         length="L",
+        timed=False,
     ),
 )
