@@ -297,7 +297,7 @@ def _no_positive(family: Family, material: Material, explain: bool, largest: int
         other = Family(m, family.spacing * family.m / m, family.area_rule, family.influence)
         if representable(other, material):
             instead = _instead(family, material, explain)
-            return f"{here}; they exist at m = {m}. At this m: {instead}"
+            return f"{here}; they exist at m = {m}. Use that, or the following. {instead}"
     return (
         f"{here}, nor at any m ≤ {largest}, whose bonds have too few directions. "
         f"{_instead(family, material, explain)}"

@@ -244,8 +244,9 @@ def assess(family: Family, moduli: Moduli, count: int = 48) -> Stability:
 def remedy(family: Family, material: Material) -> str:
     """What to use where a calibration is refused: a sentence for its error message.
 
-    Every calibration and law is tried at the family's own m first, then at others. What is named
-    has been found stable; that nothing is named means that all of it is unstable or does not
+    Every calibration and law is tried at the family's own m first, then at larger and at smaller
+    ones. What is named has been found stable; that nothing is named means that all of it is
+    unstable or does not
     exist.
 
     Parameters
@@ -262,7 +263,10 @@ def remedy(family: Family, material: Material) -> str:
                 ": C66 < C12 asks for shear bonds that are negative on the mean, and here they "
                 "outweigh the axial ones"
             )
-    for m in (family.m, *(m for m in _REMEDY_HORIZONS if m != family.m)):
+    # Larger families first: what fails for want of directions or of area finds more there.
+    larger = [m for m in _REMEDY_HORIZONS if m > family.m]
+    smaller = [m for m in _REMEDY_HORIZONS if m < family.m]
+    for m in (family.m, *larger, *reversed(smaller)):
         other = Family(m, family.spacing * family.m / m, family.area_rule, family.influence)
         for calibration, law in remedies:
             found = _trial(other, material, calibration, law)
