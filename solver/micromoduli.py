@@ -209,7 +209,10 @@ def _elastic(
         radial = 0.5 * family.horizon**3 * family.influence.moment(2)
         mean = 2 * np.pi / len(circle)
         system = radial * mean * (moments_n @ basis_n.T + moments_t @ basis_t.T)
-    coefficients = _solve(system, target, f"{name} law ({calibration})")
+    try:
+        coefficients = _solve(system, target, f"{name} law ({calibration})")
+    except CalibrationError as error:
+        raise CalibrationError(f"{error}. {_instead(family, material, explain)}".rstrip()) from None
     basis_n, basis_t = law.elastic(psi, material)
     normal, shear = coefficients @ basis_n, coefficients @ basis_t
     if calibration == "positive":
@@ -331,7 +334,10 @@ def _conductive(
         radial = 0.5 * family.horizon**2 * family.influence.moment(1) * 2 * np.pi / len(circle)
         on_circle = law.conductive(circle, material, extended=False)
         system = radial * conductive_moments(circle) @ on_circle.T
-    conductivity = _solve(system, target, f"{name} law ({calibration})") @ basis
+    try:
+        conductivity = _solve(system, target, f"{name} law ({calibration})") @ basis
+    except CalibrationError as error:
+        raise CalibrationError(f"{error}. {_instead(family, material, explain)}".rstrip()) from None
     if calibration == "positive":
         half = family.size // 2
         scale = np.maximum(np.abs(conductivity[:half]), 1e-3 * np.abs(conductivity).max())

@@ -71,3 +71,12 @@ def test_explanations_can_be_left_out():
     with pytest.raises(CalibrationError) as caught:
         calibrate(Family(3), UNREACHABLE, "positive", explain=False)
     assert "Use" not in str(caught.value)
+
+
+def test_laws_that_cannot_be_calibrated_say_what_can():
+    # At m = 3 hardly a bond lies near 15°, and the narrow cosine law that the ratio asks for
+    # falls between them.
+    material = ConductivityTensor.orthotropic(1000.0, 1.0, np.radians(15))
+    with pytest.raises(CalibrationError, match="has the moments of this tensor") as caught:
+        calibrate(Family(3), material)
+    assert followed(str(caught.value), 3, material).sign == "positive"
