@@ -66,6 +66,8 @@ class Hats:
         Number of hats, split ones counted for each piece.
     split : int
         Nodes whose support is cut.
+    node, piece : ndarray of int, shape (count,)
+        Coarse node of each hat, row by row `width` to a row, and the piece of its support.
     """
 
     def __init__(self, operator: BondOperator, cells: int) -> None:
@@ -74,22 +76,22 @@ class Hats:
         rows, columns = (axis[operator.active] for axis in lattice.cells)
         h, count = self.cells, len(rows)
         row, column, fy, fx = rows // h, columns // h, (rows % h) / h, (columns % h) / h
-        self._width = lattice.shape[1] // h + 2
-        here = row * self._width + column
-        node = np.stack([here, here + 1, here + self._width, here + self._width + 1], axis=1)
+        self.width = lattice.shape[1] // h + 2
+        here = row * self.width + column
+        node = np.stack([here, here + 1, here + self.width, here + self.width + 1], axis=1)
         weight = np.stack([(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy], axis=1)
         piece = self._pieces(node, weight)
         self.split = len(np.unique(node[piece > 0]))
         used = (weight > 0) & (piece < _PIECES)
         self._pieces_most = int(piece[used].max(initial=0)) + 1
-        key = node[used] * self._pieces_most + piece[used]
+        key = node[used] * _PIECES + piece[used]
         keys, hat = np.unique(key, return_inverse=True)
         self.count = len(keys)
         particle = np.repeat(np.arange(count), 4).reshape(count, 4)[used]
         prolongation = sparse.csr_array((weight[used], (particle, hat)), shape=(count, self.count))
         self.prolong = _Rows.of(prolongation)
         self.restrict = _Rows.of(prolongation.T.tocsr())
-        self._node, self._piece = keys // self._pieces_most, keys % self._pieces_most
+        self.node, self.piece = keys // _PIECES, keys % _PIECES
 
     def _pieces(self, node: Indices, weight: Array) -> Indices:
         """Piece of the hat's support that each (particle, hat) pair belongs to, like `node`."""
@@ -163,17 +165,17 @@ class Hats:
         # hats of one colour apart.
         window = (2 * (h - 1) + reach) // h
         period = 2 * window + 1
-        row, column = self._node // self._width, self._node % self._width
+        row, column = self.node // self.width, self.node % self.width
         lookup = np.full(
             (self._pieces_most, row.max() + 2 * period + 1, column.max() + 2 * period + 1), -1
         )
-        lookup[self._piece, row + period, column + period] = np.arange(self.count)
+        lookup[self.piece, row + period, column + period] = np.arange(self.count)
         stale = np.ones(self.count, dtype=bool) if known is None else self._stale(changed)
         if known is not None and not stale.any():
             return known[1]
         # Second pieces exist along cracks only: their probes need no more than that strip.
         views = [
-            _Window(self, stale & (self._piece == piece), h + reach)
+            _Window(self, stale & (self.piece == piece), h + reach)
             for piece in range(self._pieces_most)
         ]
         values, starts, ends = [], [], []
@@ -183,7 +185,7 @@ class Hats:
                 # Another window: what the last one wrote must not be read.
                 operator.clear()
             colour_row, colour_column = divmod(rest, period)
-            lit = (self._piece == piece) & (row % period == colour_row)
+            lit = (self.piece == piece) & (row % period == colour_row)
             lit &= (column % period == colour_column) & stale
             if not lit.any():
                 continue
@@ -213,7 +215,7 @@ class Hats:
     def _stale(self, changed: Indices | None) -> NDArray[np.bool_]:
         """Hats whose image under K may differ because of particles with changed bonds."""
         h, lattice = self.cells, self.operator.bonds.lattice
-        nodes = np.zeros((lattice.shape[0] // h + 2, self._width), dtype=bool)
+        nodes = np.zeros((lattice.shape[0] // h + 2, self.width), dtype=bool)
         if changed is not None and len(changed):
             particles = self.operator.active[changed]
             rows, columns = (axis[particles] for axis in lattice.cells)
@@ -224,14 +226,14 @@ class Hats:
                     k = np.clip((columns + dc) // h, 0, nodes.shape[1] - 2)
                     for one in (0, 1):
                         nodes[r + one, k] = nodes[r + one, k + 1] = True
-        return nodes.ravel()[self._node]
+        return nodes.ravel()[self.node]
 
     def _standing(
         self, before: Hats, matrix: sparse.csc_array, stale: NDArray[np.bool_]
     ) -> tuple[Array, Indices, Indices]:
         """Entries of the old matrix between hats that are not stale, renumbered."""
-        keys = self._node * 64 + self._piece
-        old_keys = before._node * 64 + before._piece
+        keys = self.node * _PIECES + self.piece
+        old_keys = before.node * _PIECES + before.piece
         where = np.minimum(np.searchsorted(keys, old_keys), self.count - 1)
         same = (keys[where] == old_keys) & ~stale[where]
         renumber = np.where(same, where, -1)
@@ -255,7 +257,7 @@ class _Window:
         self.answer = np.zeros_like(self.values)
         if not stale.any():
             return
-        row, column = hats._node // hats._width * h, hats._node % hats._width * h
+        row, column = hats.node // hats.width * h, hats.node % hats.width * h
         # Everything that a stale hat's image can touch, and the hats that can feel it.
         low = row[stale].min() - margin, column[stale].min() - margin
         high = row[stale].max() + margin, column[stale].max() + margin

@@ -101,7 +101,12 @@ class Condensed(LinearOperator):
         """K_θθ⁻¹ m, zero where rotations are prescribed."""
         if not moment.any():
             return np.zeros_like(moment)
-        theta, _ = cg(self.block, -moment, rtol=_INNER, M=self._scaled, maxiter=2000)
+        theta, stopped = cg(self.block, -moment, rtol=_INNER, M=self._scaled, maxiter=2000)
+        if stopped or not np.all(np.isfinite(theta)):
+            raise NegativeCurvatureError(
+                "the rotation stiffness of this body is not of one sign, rotations cannot be "
+                "condensed: use law=UniformShear(), calibration='positive' or another m"
+            )
         return np.asarray(theta, dtype=np.float64)
 
     def _matvec(self, u: Array) -> Array:

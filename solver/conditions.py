@@ -87,13 +87,13 @@ class Support:
     def __post_init__(self) -> None:
         if self.displacement is not None and (self.u1 is not None or self.u2 is not None):
             raise SceneError("give either displacement or u1 and u2 in a support, not both")
-        if not (self.physics - {"rotation"}) and self.rotation is None:
+        if not (self.given - {"rotation"}) and self.rotation is None:
             raise SceneError(
                 "a support prescribes nothing: give displacement, u1, u2, rotation or temperature"
             )
 
     @property
-    def physics(self) -> set[str]:
+    def given(self) -> set[str]:
         """Names of the values that are given."""
         names = ("displacement", "u1", "u2", "rotation", "temperature")
         return {name for name in names if getattr(self, name) is not None}
@@ -122,10 +122,10 @@ class Support:
     def columns(self, elastic: bool) -> list[tuple[int, Value, int, int]]:
         """(unknown, value, component of it, components it has) of everything prescribed."""
         wrong = {"temperature"} if elastic else {"displacement", "u1", "u2", "rotation"}
-        if self.physics & wrong:
+        if self.given & wrong:
             physics = "an elastic" if elastic else "a conductive"
             raise SceneError(
-                f"{physics} scene has no {', '.join(sorted(self.physics & wrong))} to prescribe"
+                f"{physics} scene has no {', '.join(sorted(self.given & wrong))} to prescribe"
             )
         found: list[tuple[int, Value, int, int]] = []
         if self.displacement is not None:

@@ -48,10 +48,10 @@ class _Guarded(LinearOperator):
     def _matvec(self, x: Array) -> Array:
         y = self.operator.matvec(x)
         energy = float(x @ y)
-        if energy <= 0.0 and float(x @ x) > 0.0:
+        if not energy > 0.0 and float(x @ x) > 0.0:
             raise NegativeCurvatureError(
-                f"the body has a direction of non-positive energy (x·Kx = {energy:.3g}): damage "
-                f"or a cut family has taken more stiffness than the bulk can spare. Use "
+                f"the body has a direction of non-positive energy (x·Kx = {energy:.3g}): a "
+                f"cut family, or damage, has taken more stiffness than the bulk can spare. Use "
                 f"calibration='positive', another m, or hold the loose part"
             )
         return y

@@ -101,7 +101,7 @@ class Cosine:
 
     def __post_init__(self) -> None:
         if self.n is not None:
-            _even(self.n)
+            object.__setattr__(self, "n", _even(self.n))
 
     @property
     def degree(self) -> int:
@@ -157,7 +157,7 @@ class Fourfold:
     axis: float | None = None
 
     def __post_init__(self) -> None:
-        _even(self.n)
+        object.__setattr__(self, "n", _even(self.n))
 
     @property
     def degree(self) -> int:

@@ -18,6 +18,7 @@ import warnings
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, lobpcg
+from threadpoolctl import threadpool_limits
 
 from .bonds import Bonds
 from .errors import MechanismError
@@ -67,7 +68,8 @@ def zero_energy_particles(operator: BondOperator) -> NDArray[np.int64]:
             dtype=np.float64,
             matmat=lambda x: diagonal[:, None] * x,
         )
-        with warnings.catch_warnings():
+        # Reductions must not depend on BLAS's threads.
+        with warnings.catch_warnings(), threadpool_limits(limits=1, user_api="blas"):
             # It warns of modes above the lowest that have not converged; only zeros matter.
             warnings.simplefilter("ignore", UserWarning)
             values, vectors = lobpcg(
@@ -102,7 +104,8 @@ def find(
         See `solver.scene.Discretisation`.
     elastic : bool
     damaged : bool
-        Whether single bonds are broken: only then are slack particles and hinges looked for.
+        Whether single bonds are broken: only then are hinges looked for (cracks, too, may leave
+        slack particles).
     positive : bool
         Whether the operator is (taken to be) positive.
     """
@@ -113,17 +116,16 @@ def find(
             sentence for _, sentence in loose[:3]
         )
     none = np.zeros(0, dtype=np.int64)
-    if not damaged:
-        return none, ""
     points = bonds.lattice.points
-    slack = slack_particles(operator)
+    cut = len(bonds.special) and ((bonds.factors == 0) & bonds.exist(bonds.special)).any()
+    slack = slack_particles(operator) if damaged or cut else none
     if len(slack):
         x, y = points[slack[0]]
         return slack, (
             f"{len(slack)} particle(s), the first at ({x:.4g}, {y:.4g}), have too few bonds left "
             f"to be held by them"
         )
-    if positive and len(operator.active):
+    if damaged and positive and len(operator.active):
         hinged = zero_energy_particles(operator)
         if len(hinged):
             x, y = points[hinged].mean(axis=0)

@@ -271,7 +271,7 @@ class BondOperator(LinearOperator):
 
     @property
     def directed_bonds(self) -> int:
-        """Bonds that one product visits, each from both ends."""
+        """Bonds that one product visits, each from both ends, missing and cut ones included."""
         return len(self.active) * self.bonds.family.size
 
     @property

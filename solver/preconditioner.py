@@ -73,8 +73,9 @@ def _inverse(operator: BondOperator, blocks: Array, which: NDArray[np.int64] | N
     if not len(blocks):
         return np.zeros((operator.components, operator.components, 0))
     values, vectors = np.linalg.eigh(blocks)
-    relative = values[:, 0] / np.abs(values).max(axis=1)
-    if relative.min() <= 1e-12:
+    with np.errstate(invalid="ignore", divide="ignore"):
+        relative = values[:, 0] / np.abs(values).max(axis=1)
+    if not relative.min() > 1e-12:
         where = "a bulk particle"
         if which is not None:
             x, y = operator.bonds.lattice.points[operator.active[which[np.argmin(relative)]]]
@@ -154,7 +155,7 @@ class TwoLevel(LinearOperator):
         )
 
     def _largest_eigenvalue(self) -> float:
-        """Upper bound of λ(D⁻¹K)."""
+        """Largest λ(D⁻¹K): a rigorous bound without negative moduli, else a safe estimate."""
         if self.operator.moduli.non_negative:
             return 2.0
         # A deterministic start with components along everything.
@@ -204,12 +205,13 @@ class TwoLevel(LinearOperator):
 
 
 def same_unknowns(one: BondOperator, other: BondOperator) -> bool:
-    """Whether two operators act on the same unknowns with the same moduli."""
+    """Whether two operators act on the same unknowns of the same lattice, with the same moduli."""
     fixed = (one.fixed is None) == (other.fixed is None)
     if fixed and one.fixed is not None and other.fixed is not None:
         fixed = np.array_equal(one.fixed, other.fixed)
     return bool(
         fixed
+        and np.array_equal(one.bonds.lattice.mask, other.bonds.lattice.mask)
         and np.array_equal(one.active, other.active)
         and np.array_equal(one.blocks, other.blocks)
     )

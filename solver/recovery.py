@@ -37,7 +37,10 @@ def _pairs(solution: Solution) -> Iterator[_Pair]:
     """The bonds of each offset: `difference` and sum of the `ends`, shape (components, N)."""
     parts = solution.discretisation
     lattice, family, bonds = parts.lattice, parts.family, parts.bonds
-    grid = lattice.to_grid(solution.unknowns)
+    # Parts set aside are NaN and have no bonds: zeros keep them from spoiling their neighbours,
+    # whose bonds to them carry the factor 0.
+    known = np.nan_to_num(solution.unknowns, nan=0.0)
+    grid = lattice.to_grid(known)
     rows, columns = lattice.cells
     for o, (dx, dy) in enumerate(family.offsets):
         there = grid[:, rows + dy, columns + dx]
@@ -48,9 +51,15 @@ def _pairs(solution: Solution) -> Iterator[_Pair]:
             float(family.length[o]),
             family.normal[o],
             family.tangent[o],
-            there - solution.unknowns,
-            there + solution.unknowns,
+            there - known,
+            there + known,
         )
+
+
+def _aside(solution: Solution, result: Array) -> Array:
+    """`result` (N, ...) with NaN at the particles that were set aside."""
+    result[np.isnan(solution.unknowns).any(axis=0)] = np.nan
+    return result
 
 
 def _elastic(solution: Solution) -> ElasticModuli:
@@ -121,7 +130,7 @@ def stress(solution: Solution, rule: Literal["plane", "family"] = "plane") -> Ar
                     result[:, axis] += share * force[:, rows + start[1], columns + start[0]]
     else:
         raise ValueError(f"unknown stress rule {rule!r}; known: plane, family")
-    return np.moveaxis(result, 2, 0)
+    return _aside(solution, np.moveaxis(result, 2, 0))
 
 
 def _crossings(offset: NDArray[np.int64], axis: int) -> Iterator[tuple[tuple[int, int], float]]:
@@ -181,7 +190,7 @@ def flux(solution: Solution, rule: Literal["consistent", "hotter"] = "consistent
         flow = flow * pair.difference[0]
         share = np.where(pair.difference[0] > 0, 1.0, 0.0) if rule == "hotter" else 0.5
         result -= np.outer(pair.normal, share * flow)
-    return result.T
+    return _aside(solution, result.T)
 
 
 def strain_energy_density(solution: Solution) -> Array:
@@ -199,7 +208,7 @@ def strain_energy_density(solution: Solution) -> Array:
             density = moduli.normal[pair.index] * s**2 + moduli.shear[pair.index] * gamma**2
             density = density * pair.length
         result += 0.25 * pair.weight * pair.factor * density
-    return result
+    return _aside(solution, result)
 
 
 def displacement_gradient(solution: Solution) -> Array:
@@ -215,7 +224,7 @@ def displacement_gradient(solution: Solution) -> Array:
         xi = pair.length * pair.normal
         moment += weight[:, None, None] * np.outer(xi, xi)
         slope += (weight * pair.difference[:2]).T[:, :, None] * xi
-    return slope @ np.linalg.pinv(moment)
+    return _aside(solution, slope @ np.linalg.pinv(moment))
 
 
 def macrorotation(solution: Solution) -> Array:

@@ -73,6 +73,8 @@ class Polygon(Region):
     vertices: tuple[Point, ...]
 
     def __post_init__(self) -> None:
+        if not np.all(np.isfinite(np.asarray(self.vertices, dtype=np.float64))):
+            raise ValueError(f"a polygon with a vertex that is not finite: {self.vertices}")
         shape = shapely.Polygon(self.vertices) if len(self.vertices) > 2 else None
         if shape is None or not shape.is_valid or shape.area == 0:
             raise ValueError(f"not a simple polygon with an area: {self.vertices}")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from numbers import Real
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from . import mechanisms
 from .bonds import Bonds
 from .conditions import Load, Support, evaluate
-from .errors import SceneError
+from .errors import MechanismError, SceneError
 from .family import AreaRule, Family
 from .influence import CONSTANT, Influence, influence
 from .lattice import Lattice
@@ -60,13 +61,14 @@ class Scene:
     area_rule : {"partial", "full", "exact"}
     surface : {"volume", "none"}
     cracks : sequence of Crack
-        Bonds that cross one are cut, and its faces are surfaces.
+        Bonds that cross one are cut, and its faces are surfaces. A part that cracks leave on a
+        single bond is not looked for; broken bonds (`broken`) are searched for such hinges.
     broken : callable, optional
         ``broken(lattice, family)`` → booleans of shape (family size / 2, N): bonds, by half
         offset and particle of origin, that carry nothing (damage).
     loose : {"refuse", "drop"}
         What to do with parts and particles that nothing holds: refuse the scene, or set them
-        aside (their fields are NaN, the rest is solved).
+        aside (their fields are NaN, the rest is solved). A load on such a part is refused.
 
     Raises
     ------
@@ -105,6 +107,20 @@ class Scene:
             raise SceneError(f"loose must be 'refuse' or 'drop', not {self.loose!r}")
         if not isinstance(self.region, Region):
             raise SceneError(f"region must be a Region, not {type(self.region).__name__}")
+        if not isinstance(self.material, Material):
+            raise SceneError(
+                f"material must be an ElasticTensor or a ConductivityTensor, not "
+                f"{type(self.material).__name__}"
+            )
+        listed: dict[str, type] = {"supports": Support, "loads": Load, "cracks": Crack}
+        for name, kind in listed.items():
+            items = getattr(self, name)
+            if not isinstance(items, Sequence) or not all(isinstance(i, kind) for i in items):
+                raise SceneError(f"{name} must be a list of {kind.__name__} objects")
+        for name in ("spacing", "m"):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, Real):
+                raise SceneError(f"{name} must be a number, not {value!r}")
         wanted = {"force", "couple"} if self.elastic else {"source"}
         for load in self.loads:
             if load.kind not in wanted:
@@ -145,8 +161,9 @@ class Discretisation:
     lattice, family, moduli, stability, bonds, operator
         The parts, see their modules.
     prescribed : ndarray of bool, shape (components, N)
+        True for parts set aside too.
     values : ndarray, shape (components, N)
-        Prescribed values (rotations times the spacing), zero where free.
+        Prescribed values (rotations times the spacing), zero where free, NaN where set aside.
     load : ndarray, shape (components, N)
         Densities of force, couple over spacing, or source.
     seconds : float
@@ -197,7 +214,10 @@ class Discretisation:
             if scene.loose == "refuse" or aside.sum() + len(loose) == (~held).sum():
                 raise mechanisms.refuse(why)
             if load[:, loose].any():
-                raise mechanisms.refuse(f"a load acts where {why}")
+                raise MechanismError(
+                    f"a load acts on a part that nothing holds: {why}. Hold it, or leave it out "
+                    f"of the load (where=...)"
+                )
             aside[loose] = True
             prescribed[:, loose] = True
             values[:, loose] = np.nan
@@ -247,12 +267,12 @@ def _supports(scene: Scene, lattice: Lattice, components: int) -> tuple[Mask, Ar
         selected = support.select(lattice)
         if not selected.any():
             raise SceneError("a support holds no particle: its layer or region is empty")
-        evaluated: dict[int, Array] = {}
+        evaluated: dict[tuple[int, int], Array] = {}
         for unknown, value, component, width in columns:
             if unknown >= components:
                 # Without shear stiffness rotations are no unknowns; prescribing them is moot.
                 continue
-            key = id(value)
+            key = id(value), width
             if key not in evaluated:
                 what = "a prescribed value"
                 evaluated[key] = evaluate(value, lattice.points[selected], width, what)

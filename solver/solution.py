@@ -22,7 +22,7 @@ class Statistics:
     Attributes
     ----------
     particles, unknowns, bonds : int
-        Particles of the body, free unknowns, directed bonds of the active particles.
+        Particles of the body, free unknowns, directed bonds that a product visits.
     method : str
         Solver and preconditioner.
     sign, margin : str, float
@@ -89,7 +89,7 @@ class Solution:
 
     @property
     def prescribed(self) -> NDArray[np.bool_]:
-        """Particles of which everything is prescribed, shape (N,)."""
+        """Particles of which everything is prescribed, or which were set aside, shape (N,)."""
         return np.logical_and.reduce(self.discretisation.prescribed, axis=0)
 
     def _need(self, elastic: bool) -> None:

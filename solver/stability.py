@@ -1,6 +1,6 @@
 """The bulk symbol: which bond models are stable solids, and what sign their operator has.
 
-For u = û exp(i k·x) a row of the bulk operator is a Hermitian matrix (PHYSICS of the bond energy,
+For u = û exp(i k·x) a row of the bulk operator is a Hermitian matrix (from the bond energy,
 φ = k·ξ, per unit volume, w = α Λ Δv):
 
     H_uu = Σ (w/|ξ|)(k_n n nᵀ + k_t t tᵀ)(1 − cos φ)
@@ -200,6 +200,11 @@ def assess(family: Family, moduli: Moduli, count: int = 48) -> Stability:
     -------
     Stability
     """
+    spectrum = np.linalg.eigvalsh(effective_tensor(family, moduli))
+    if not spectrum[0] > _SINGULAR * np.abs(spectrum).max():
+        # Longest waves: a homogeneous strain (or gradient) would release energy.
+        worst_share = float(spectrum[0] / np.abs(spectrum).max())
+        return Stability("inadmissible", min(worst_share, 0.0), (0.0, 0.0), (0.0, 0.0))
     k = brillouin_zone(count)
     low = high = 0.0
     if isinstance(moduli, ElasticModuli) and moduli.has_shear:
@@ -246,8 +251,7 @@ def remedy(family: Family, material: Material) -> str:
 
     Every calibration and law is tried at the family's own m first, then at larger and at smaller
     ones. What is named has been found stable; that nothing is named means that all of it is
-    unstable or does not
-    exist.
+    unstable or does not exist.
 
     Parameters
     ----------
@@ -307,7 +311,9 @@ def require_admissible(family: Family, moduli: Moduli) -> Stability:
     if found.sign == "inadmissible":
         k1, k2 = found.wave_vector
         low, high = found.rotation_range
-        if low * high < 0:
+        if found.wave_vector == (0.0, 0.0):
+            why = "a homogeneous strain releases energy (the sums over bonds are not positive)"
+        elif low * high < 0:
             why = "the rotation stiffness of the bonds passes through zero"
         elif found.margin == -np.inf:
             why = "a pattern of rotations strains no shear bond (the rotation stiffness is zero)"

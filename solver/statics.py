@@ -15,7 +15,6 @@ here; the kernels themselves do not depend on theirs.
 
 from __future__ import annotations
 
-import resource
 import sys
 from time import perf_counter
 from typing import Literal, get_args
@@ -38,8 +37,6 @@ Preconditioner = Literal["auto", "two-level", "block-jacobi"]
 
 # Below this many unknowns block Jacobi needs less time than the set-up of two levels.
 _TWO_LEVEL = 2_000
-# getrusage counts kilobytes, but bytes on macOS.
-_RSS_UNIT = 1 if sys.platform == "darwin" else 1024
 
 
 def companion(operator: BondOperator) -> BondOperator:
@@ -151,9 +148,20 @@ def solve(
         residual=residual,
         setup_seconds=discretisation.seconds + (ready - begun),
         solve_seconds=perf_counter() - ready,
-        peak_memory=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * _RSS_UNIT,
+        peak_memory=_peak_memory(),
     )
     return Solution(discretisation, discretisation.field(x), statistics, m)
+
+
+def _peak_memory() -> int:
+    """Peak resident memory of this process in bytes; 0 where the system does not tell."""
+    try:
+        import resource
+    except ImportError:  # not POSIX
+        return 0
+    # Kilobytes, but bytes on macOS.
+    unit = 1 if sys.platform == "darwin" else 1024
+    return int(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit)
 
 
 def _start(discretisation: Discretisation, previous: Solution | None) -> Array:

@@ -5,7 +5,7 @@ A tensor is validated once, here, so that nothing downstream has to doubt it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -60,11 +60,9 @@ class ElasticTensor:
     """
 
     voigt: Array
-    physics: str = field(default="elastic", init=False, repr=False)
 
     def __init__(self, voigt: ArrayLike) -> None:
         object.__setattr__(self, "voigt", _validated(voigt, 3, "the elastic tensor"))
-        object.__setattr__(self, "physics", "elastic")
 
     @classmethod
     def isotropic(cls, E: float, nu: float, plane: Plane = "stress") -> ElasticTensor:
@@ -75,7 +73,12 @@ class ElasticTensor:
         ValueError
             If E ≤ 0, or ν lies outside (−1, 1) in plane stress or (−1, 1/2) in plane strain.
         """
-        shear = E / (2.0 * (1.0 + nu)) if nu > -1.0 else -1.0
+        largest = 1.0 if plane == "stress" else 0.5
+        if not -1.0 < nu < largest:
+            raise ValueError(
+                f"Poisson's ratio must lie between -1 and {largest:g} in plane {plane}, not {nu}"
+            )
+        shear = E / (2.0 * (1.0 + nu))
         return cls.orthotropic(E, E, shear, nu, plane=plane, E3=E, nu13=nu, nu23=nu)
 
     @classmethod
@@ -184,11 +187,9 @@ class ConductivityTensor:
     """
 
     matrix: Array
-    physics: str = field(default="conductive", init=False, repr=False)
 
     def __init__(self, matrix: ArrayLike) -> None:
         object.__setattr__(self, "matrix", _validated(matrix, 2, "the conductivity tensor"))
-        object.__setattr__(self, "physics", "conductive")
 
     @classmethod
     def isotropic(cls, k: float) -> ConductivityTensor:

@@ -14,7 +14,9 @@ from solver import (
     Load,
     MechanismError,
     Scene,
+    SceneError,
     Support,
+    recovery,
     rectangle,
 )
 from solver.lattice import Lattice
@@ -137,3 +139,33 @@ def test_a_body_cut_in_two_needs_supports_on_both_sides() -> None:
     cracked = _scene(supports=[below], cracks=[Crack((-0.6, 0.0), (0.6, 0.0))])
     with pytest.raises(MechanismError, match="translation along 1, translation along 2, rotation"):
         cracked.discretise()
+
+
+@pytest.mark.parametrize("conductive", [False, True])
+def test_recovery_is_nan_only_where_parts_were_set_aside(conductive: bool) -> None:
+    changes: dict[str, object] = {}
+    if conductive:
+        changes = {
+            "material": ConductivityTensor.isotropic(1.0),
+            "supports": [Support.layer(cells=3.5, temperature=lambda x, y: x)],
+        }
+    solution = _scene(_around(_one, 0), loose="drop", **changes).solve(1e-11)
+    aside = np.isnan(solution.unknowns).any(axis=0)
+    fields = [recovery.strain_energy_density(solution)]
+    if conductive:
+        fields += [recovery.flux(solution, "consistent"), recovery.flux(solution, "hotter")]
+    else:
+        fields += [recovery.stress(solution, "plane"), recovery.stress(solution, "family")]
+        fields += [recovery.macrorotation(solution)]
+    for field in fields:
+        unknown = np.isnan(field.reshape(len(field), -1)).any(axis=1)
+        assert np.array_equal(unknown, aside)
+
+
+def test_one_function_for_two_values_is_not_confused() -> None:
+    def pair(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return np.stack([x, y], axis=-1)
+
+    support = Support.layer(cells=3.5, displacement=pair, rotation=pair)
+    with pytest.raises(SceneError, match="one value a particle"):
+        _scene(supports=[support]).discretise()

@@ -265,7 +265,7 @@ def test_conical_influence_scales_the_paper_s_constants():
 
 
 def test_continuum_calibration_on_the_paper_s_lattice():
-    # Measured with m = 5, partial areas and n = 34 (PHYSICS note 2); not what was asked for.
+    # Measured with m = 5, partial areas and n = 34 (measured); not what was asked for.
     moduli = calibrate(Family(5), ConductivityTensor(DISC), "continuum", Cosine(34))
     found = effective_tensor(Family(5), moduli)
     np.testing.assert_allclose(found, [[4.63, 1.88], [1.88, 0.96]], atol=5e-3)

@@ -57,7 +57,7 @@ def test_force_moment_and_energy_of_a_single_bond(offset):
     eta = u[1] - u[0]
     s, gamma = eta @ n / size, eta @ t / size - 0.5 * theta.sum()
     dv = dx**2
-    # An unordered pair carries |ξ| (PHYSICS note 1): ½ |ξ| (k_n s² + k_t γ²) Δv².
+    # An unordered pair carries |ξ|: ½ |ξ| (k_n s² + k_t γ²) Δv².
     energy = 0.5 * size * (kn * s**2 + kt * gamma**2) * dv**2
     x = np.concatenate([u.T, [theta * dx]]).ravel()
     rows = operator.matvec(x).reshape(3, 2)

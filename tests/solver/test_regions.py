@@ -16,7 +16,7 @@ coordinate = st.floats(-0.9, 0.9)
 
 @pytest.mark.parametrize(
     ("cells", "count"),
-    # PHYSICS note 1: the paper's figures, but for a/120, where it prints 45344.
+    # the paper's figures, but for a/120, where it prints 45344.
     [(30, 2828), (60, 11304), (100, 31428), (120, 45244)],
 )
 def test_particles_of_the_disc(cells, count):

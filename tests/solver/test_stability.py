@@ -20,7 +20,7 @@ from solver import (
 )
 from solver.bonds import Bonds
 from solver.lattice import Lattice
-from solver.micromoduli import ElasticModuli, bond_weights, calibrate
+from solver.micromoduli import ConductiveModuli, ElasticModuli, bond_weights, calibrate
 from solver.operators import BondOperator
 from solver.stability import (
     acoustic_tensor,
@@ -42,7 +42,7 @@ from tests.solver.bodies import (
     voigts,
 )
 
-# C11, C22, C12, C66 of a carbon/epoxy ply, GPa (PHYSICS note 2).
+# C11, C22, C12, C66 of a carbon/epoxy ply, GPa (measured).
 PLY = ElasticTensor([[140, 3, 0], [3, 10, 0], [0, 0, 5]])
 
 
@@ -86,7 +86,7 @@ def test_symbol_is_the_bloch_transform_of_a_row_of_the_operator(kind, seed, k, m
 @exact
 @given(voigts(), st.sampled_from([3, 4.5, 5]), st.sampled_from([None, UniformShear()]))
 def test_invariants_of_the_sums(voigt, m, law):
-    # PHYSICS note 3, w = ½ α Λ |ξ| Δx².
+    # w = ½ α Λ |ξ| Δx².
     family = Family(m, 0.1)
     moduli = calibrate(family, ElasticTensor(voigt), "lattice", law)
     weight = bond_weights(family, ElasticTensor(voigt))
@@ -268,3 +268,17 @@ def test_the_margin_is_taken_at_the_wave_vector_that_is_named(material, law):
     k = np.array(found.wave_vector)
     assert np.abs(k).max() <= np.pi
     assert margins(family, moduli, k) == pytest.approx(found.margin, rel=1e-9)
+
+
+def test_sums_that_are_not_positive_definite_are_inadmissible():
+    # A ratio of two negatives must not pass for positive.
+    family = Family(3)
+    for moduli in (
+        ConductiveModuli(-np.ones(family.size)),
+        ElasticModuli(-np.ones(family.size), np.zeros(family.size)),
+    ):
+        found = assess(family, moduli)
+        assert found.sign == "inadmissible"
+        assert found.margin < 0
+        with pytest.raises(InadmissibleMaterialError, match="releases energy"):
+            require_admissible(family, moduli)

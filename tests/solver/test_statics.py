@@ -154,7 +154,7 @@ def test_a_patch_wrong_by_one_per_cent_is_seen():
 
 
 def test_free_rotations_in_the_layer_spoil_the_patch():
-    # PHYSICS note 2: prescribe the rotation wherever it is known.
+    # prescribe the rotation wherever it is known.
     field = field_of(FIG_7)
     layer = Support.layer(3.5, displacement=field.displacement)
     scene = Scene(disc(1.0), 0.1, ElasticTensor(FIG_7), [layer], m=3)
@@ -198,7 +198,7 @@ def test_the_printed_cubic_needs_its_source():
     def printed(x, y):
         return cubic(x, y) - (1 / 3 - 1 / 5) * y**3
 
-    # div(D ∇T) = −0.8 x₂ for the printed field (PHYSICS note 4): a source of 0.8 x₂ balances it.
+    # div(D ∇T) = −0.8 x₂ for the printed field: a source of 0.8 x₂ balances it.
     source = [Load.source(lambda x, y: 0.8 * y)]
     assert heat_error(printed, DISC, source) < 1e-11
     assert heat_error(printed, DISC) > 1e-3
