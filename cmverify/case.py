@@ -133,6 +133,10 @@ class Measurement:
         return sum(self.seconds.get(stage, 0.0) for stage in ("setup", "solve"))
 
 
+def nothing_to_compile() -> None:
+    """The warm-up of a method without compiled code."""
+
+
 @dataclass(frozen=True)
 class Method:
     """A way to solve the case's problem.
@@ -153,7 +157,7 @@ class Method:
     kind: Literal["bond", "fem"]
     run: Callable[[int], Measurement]
     resolutions: Mapping[Level, tuple[int, ...]]
-    warm_up: Callable[[], None] = lambda: None
+    warm_up: Callable[[], None] = nothing_to_compile
 
     @property
     def coarsest(self) -> int:
@@ -163,7 +167,7 @@ class Method:
 
 @dataclass(frozen=True)
 class OrderBand:
-    """Bounds for the observed order between the two finest resolutions that were run.
+    """Bounds for the observed order.
 
     Parameters
     ----------
@@ -172,13 +176,17 @@ class OrderBand:
     since : int
         Resolutions below this one are pre-asymptotic and are not used.
     floor : float
-        Where an error is below it, rounding decides the order and none is judged.
+        Where all errors are below it, rounding decides the order and none is judged.
+    fitted : bool
+        Fit one order to all resolutions instead of taking it between the two finest: for
+        unstructured meshes, whose regularity differs from one to the next.
     """
 
     low: float
     high: float
     since: int = 0
     floor: float = 1e-13
+    fitted: bool = False
 
 
 @dataclass(frozen=True)

@@ -105,6 +105,7 @@ NOISE = 1e-12
 def table(result: CaseResult) -> list[Row]:
     """Every measurement of a case with the observed order from the next coarser one."""
     rows: list[Row] = []
+    counted = {check.quantity for check in result.case.checks if check.equals}
     for name, series in result.outcomes.items():
         kind = result.case.method(name).kind
         coarser: tuple[int, Measurement] | None = None
@@ -112,7 +113,7 @@ def table(result: CaseResult) -> list[Row]:
             if isinstance(outcome, Failed):
                 rows.append(Row(name, kind, n, None, {}, {}, {}, math.nan, {}, outcome))
                 continue
-            orders = _orders(coarser, (n, outcome)) if coarser and result.case.timed else {}
+            orders = _orders(coarser, (n, outcome), counted) if coarser else {}
             rows.append(
                 Row(
                     name, kind, n, outcome.unknowns, dict(outcome.quantities), orders,
@@ -123,12 +124,15 @@ def table(result: CaseResult) -> list[Row]:
     return rows
 
 
-def _orders(coarse: tuple[int, Measurement], fine: tuple[int, Measurement]) -> dict[str, float]:
+def _orders(
+    coarse: tuple[int, Measurement], fine: tuple[int, Measurement], counted: set[str]
+) -> dict[str, float]:
+    """Observed orders of the quantities that are relative errors (below 1) above the noise."""
     h = [1.0 / coarse[0], 1.0 / fine[0]]
     orders = {}
     for name, value in fine[1].quantities.items():
         before = coarse[1].quantities.get(name, math.nan)
-        if min(abs(before), abs(value)) > NOISE:
+        if name not in counted and min(before, value) > NOISE and max(before, value) < 1.0:
             orders[name] = float(observed_orders(h, [before, value])[0])
     return orders
 

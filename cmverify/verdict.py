@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 from cmverify.case import Case, Check, Measurement
-from cmverify.convergence import observed_orders
+from cmverify.convergence import fitted_order, observed_orders
 
 Kind = Literal["ran", "bound", "equal", "order"]
 
@@ -120,16 +120,22 @@ def _order(case: Case, check: Check, done: Mapping[int, Measurement]) -> list[Ve
     band = check.order
     if band is None:
         return []
-    ladder = [n for n in done if n >= band.since][-2:]
+    ladder = [n for n in done if n >= band.since]
+    ladder = ladder if band.fitted else ladder[-2:]
     if len(ladder) < 2:
         return []
     errors = [done[n].quantities.get(check.quantity, math.nan) for n in ladder]
-    where = f"{case.length}/{ladder[0]} → {case.length}/{ladder[1]}"
-    asked = f"order {band.low:g} … {band.high:g}"
     if all(abs(e) <= band.floor for e in errors):
-        # Both errors are rounding: the absolute bounds judge, an order has no meaning.
+        # All errors are rounding: the absolute bounds judge, an order has no meaning.
         return []
-    value = float(observed_orders([1.0 / n for n in ladder], errors)[0])
+    h = [1.0 / n for n in ladder]
+    if band.fitted and all(math.isfinite(e) and e > 0.0 for e in errors):
+        fit = fitted_order(h, errors)
+        value = fit.order if fit else math.nan
+    else:
+        value = float(observed_orders(h, errors)[-1])
+    where = f"{case.length}/{ladder[0]} → {case.length}/{ladder[-1]}"
+    asked = f"order {band.low:g} … {band.high:g}"
     return [
         Verdict(
             case.name, check.method, check.quantity, "order", where, value, asked,

@@ -5,14 +5,16 @@ from __future__ import annotations
 import base64
 import io
 import math
+import multiprocessing
 from collections.abc import Sequence
-from dataclasses import dataclass
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cmverify import precision
-from cmverify.case import Measurement
+from cmverify.case import Case, Measurement, nothing_to_compile
 from cmverify.results import write_text
 from cmverify.summary import CaseResult, Row, RunInfo, all_passed, table
 from cmverify.verdict import Verdict
@@ -56,29 +58,58 @@ def build(summary: Sequence[CaseResult], info: RunInfo, folder: Path) -> Path:
         css=(resources / "style.css").read_text(),
         info=info,
         passed=all_passed(summary),
-        verdicts=[v for result in summary for v in _failures_first(result.verdicts)],
-        sections=[_section(result, folder) for result in summary],
+        verdicts=[v for result in summary for v in result.verdicts],
+        sections=_sections(summary, folder, info.jobs),
     )
     path = folder / "index.html"
     write_text(path, page)
     return path
 
 
-def _failures_first(verdicts: Sequence[Verdict]) -> list[Verdict]:
-    return sorted(verdicts, key=lambda v: v.passed)
+def _tightest(verdicts: Sequence[Verdict]) -> Verdict | None:
+    """The absolute bound that is nearest to failing, or the first that fails."""
+    bounds = [v for v in verdicts if v.kind == "bound" and not math.isnan(v.margin)]
+    return max(bounds, key=lambda v: v.margin, default=None)
 
 
-def _section(result: CaseResult, folder: Path) -> dict[str, Any]:
+def _sections(summary: Sequence[CaseResult], folder: Path, jobs: int) -> list[dict[str, Any]]:
+    """One section a case; figures are drawn in `jobs` processes if that pays."""
+    if min(jobs, len(summary)) < 2:
+        drawn = [_draw(result, folder) for result in summary]
+    else:
+        # Spawned and not forked: the parent may have threads. Functions of a case stay here.
+        context = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(min(jobs, len(summary)), mp_context=context) as pool:
+            bare = [replace(result, case=_without_functions(result.case)) for result in summary]
+            drawn = list(pool.map(_draw, bare, [folder] * len(bare)))
+    return [_section(result, *parts) for result, parts in zip(summary, drawn, strict=True)]
+
+
+def _without_functions(case: Case) -> Case:
+    methods = tuple(replace(m, run=_not_here, warm_up=nothing_to_compile) for m in case.methods)
+    return replace(case, methods=methods)
+
+
+def _not_here(resolution: int) -> Measurement:
+    raise RuntimeError("a process that draws figures does not measure")
+
+
+def _draw(result: CaseResult, folder: Path) -> tuple[list[Picture], list[str]]:
+    """Figures of a case, written as files too, and the paths of its exported fields."""
+    pictures = _pictures(result, precision.points(result.case, result.outcomes))
+    for picture in pictures:  # for papers and slides
+        path = folder / "figures" / f"{result.case.name}-{picture.name}.{picture.kind}"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(picture.content)
+    return pictures, _export(result, folder)
+
+
+def _section(result: CaseResult, pictures: list[Picture], downloads: list[str]) -> dict[str, Any]:
     """Everything the template needs to know about one case."""
     case = result.case
     rows = table(result)
     quantities = [q for q in case.quantities if any(q in row.quantities for row in rows)]
     points = precision.points(case, result.outcomes)
-    pictures = _pictures(result, points)
-    for picture in pictures:  # also as files, for papers and slides
-        path = folder / "figures" / f"{case.name}-{picture.name}.{picture.kind}"
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(picture.content)
     level_command = f"cmverify run {case.name} --level {{level}} --jobs {{jobs}} --out report"
     return {
         "case": case,
@@ -87,9 +118,14 @@ def _section(result: CaseResult, folder: Path) -> dict[str, Any]:
         "quantities": quantities,
         "pictures": pictures,
         "comparison": _comparison(result, points),
-        "downloads": _export(result, folder),
+        "downloads": downloads,
+        "checks": sorted(
+            (v for v in result.verdicts if v.kind != "ran" or not v.passed), key=lambda v: v.passed
+        ),
+        "tightest": _tightest(result.verdicts),
         "command": level_command,
         "solvers": _solvers(rows),
+        "ordered": any(row.orders for row in rows),
         "timed": any(not math.isnan(row.total) and row.total > 0 for row in rows),
     }
 
@@ -109,7 +145,8 @@ def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture
 
     case, pictures = result.case, list[Picture]()
     curves = [p for p in points if p.error >= 0.0]
-    if any(p.seconds > 0 for p in curves):
+    ladder = len({p.resolution for p in curves}) > 1  # a single spacing makes no curve
+    if ladder and any(not c.equals for c in case.checks if c.quantity == case.primary):
         quantity = case.quantities[case.primary]
         pictures.append(
             Picture(
@@ -120,6 +157,7 @@ def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture
                 _spoken(curves, "error"),
             )
         )
+    if ladder and case.timed:
         pictures.append(
             Picture(
                 "work-precision",
@@ -215,6 +253,8 @@ def number(value: float | None, digits: int = 2) -> str:
     """A figure with few digits: 0.00123 as "1.2e-3", counts as they are."""
     if value is None or math.isnan(value):
         return "n/a"
+    if value == 0:
+        return "0"
     if value == int(value) and 1 <= abs(value) < 1e9:
         return f"{int(value):,}".replace(",", "\u202f")
     if 0.1 <= abs(value) < 1000:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from textwrap import wrap
 
 import matplotlib
 
@@ -21,7 +22,7 @@ from cmverify.precision import Point
 from cmverify.report import style
 
 ROUNDING = 1e-12
-NARROW, TALL = (5.4, 3.9), (5.4, 4.5)
+NARROW = (5.4, 3.9)
 
 
 def field_panels(fields: FieldSet, item: Field, length: str = "a") -> Figure:
@@ -122,12 +123,12 @@ def markers(x: np.ndarray, y: np.ndarray, count: int = 30) -> np.ndarray:
 def convergence_plot(case: Case, points: Iterable[Point], length: str = "a") -> Figure:
     """Error over spacing for every method, with fitted orders and the bounds that are judged."""
     with matplotlib.rc_context(style.RC):
-        figure = Figure(figsize=TALL)
+        figure = Figure(figsize=NARROW)
         axis = figure.subplots()
-        for name, series in _by_method(points):
+        for index, (name, series) in enumerate(_by_method(points)):
             h = np.array([1.0 / p.resolution for p in series])
             e = np.array([p.error for p in series])
-            look = style.of_method(name)
+            look = style.of_method(name, index)
             fit = fitted_order(h, e, ROUNDING) if len(h) > 1 else None
             exact = bool(np.all(e <= ROUNDING * 10))
             note = "rounding" if exact else (f"{fit.order:.2f}" if fit else "")
@@ -138,7 +139,7 @@ def convergence_plot(case: Case, points: Iterable[Point], length: str = "a") -> 
         _decades(axis.yaxis)
         _shade_rounding(axis)
         axis.set_xlabel(f"spacing or element size, $h/{length}$")
-        axis.set_ylabel(case.quantities[case.primary])
+        axis.set_ylabel("\n".join(wrap(case.quantities[case.primary], 44)))
         axis.set_title("Convergence, with fitted order (bars: what must hold)")
         _few_ticks(axis, points)
         _legend_below(axis)
@@ -148,17 +149,17 @@ def convergence_plot(case: Case, points: Iterable[Point], length: str = "a") -> 
 def work_precision_plot(case: Case, points: Iterable[Point], length: str = "a") -> Figure:
     """Error over wall seconds for every method: down and to the left is better."""
     with matplotlib.rc_context(style.RC):
-        figure = Figure(figsize=TALL)
+        figure = Figure(figsize=NARROW)
         axis = figure.subplots()
-        for name, series in _by_method(points):
+        for index, (name, series) in enumerate(_by_method(points)):
             seconds = [p.seconds for p in series]
             errors = [max(p.error, 1e-17) for p in series]
-            axis.loglog(seconds, errors, label=name, **style.of_method(name))
+            axis.loglog(seconds, errors, label=name, **style.of_method(name, index))
         _decades(axis.yaxis)
         _decades(axis.xaxis, "s")
         _shade_rounding(axis)
         axis.set_xlabel("set-up and solve (wall seconds)")
-        axis.set_ylabel(case.quantities[case.primary])
+        axis.set_ylabel("\n".join(wrap(case.quantities[case.primary], 44)))
         sizes = sorted({p.resolution for p in points})
         ladder = ", ".join(f"{length}/{n}" for n in sizes)
         axis.set_title(f"Error against time at {ladder} (lower left is better)")
@@ -167,12 +168,25 @@ def work_precision_plot(case: Case, points: Iterable[Point], length: str = "a") 
 
 
 def _legend_below(axis: Axes) -> None:
-    """Outside, where it hides nothing."""
-    axis.figure.subplots_adjust(bottom=0.265)
+    """Outside, where it hides nothing; the figure grows by what it needs."""
+    labels = axis.get_legend_handles_labels()[1]
+    longest = max(map(len, labels), default=0)
+    columns = 3 if longest <= 22 else 2 if longest <= 32 else 1
+    rows = -(-len(labels) // columns)
+    figure = axis.figure
+    below, height = 0.62 + 0.2 * rows, 3.8 + 0.2 * rows
+    figure.set_size_inches(NARROW[0], height)  # type: ignore[union-attr]
+    figure.subplots_adjust(bottom=below / height, top=1.0 - 0.32 / height)
+    if "\n" in axis.get_ylabel():
+        figure.subplots_adjust(left=0.165)
     axis.legend(
-        loc="upper center", bbox_to_anchor=(0.46, -0.155), ncols=3, fontsize=8.2,
-        columnspacing=1.1, handlelength=2.2,
-    )  # fmt: skip
+        loc="upper center",
+        bbox_to_anchor=(0.46, -0.5 / (height - below - 0.32)),
+        ncols=columns,
+        fontsize=8.2,
+        columnspacing=1.1,
+        handlelength=2.2,
+    )
 
 
 def _decades(axis: Axis, unit: str = "") -> None:

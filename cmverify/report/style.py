@@ -47,13 +47,16 @@ RC: Any = {
 }
 
 
-def of_method(name: str) -> dict[str, Any]:
-    """Keyword arguments of `plot` for a method: finite elements dashed with open markers."""
+def of_method(name: str, index: int = 0) -> dict[str, Any]:
+    """Keyword arguments of `plot` for a method: finite elements dashed with open markers.
+
+    Methods that many cases share always look the same; others go by their place in the case.
+    """
     if name in _KNOWN:
         color, marker, size = _KNOWN[name]
     else:
-        index = sum(map(ord, name)) % len(CYCLE)
-        color, marker, size = CYCLE[index], MARKERS[index], 6.0
+        turn, place = divmod(index, len(CYCLE))
+        color, marker, size = CYCLE[place], MARKERS[(place + turn) % len(MARKERS)], 6.0
     fem = name.startswith("fem")
     return {
         "color": color,

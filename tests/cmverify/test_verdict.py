@@ -53,6 +53,20 @@ def test_an_exact_count_fails_on_one_more():
         assert not all(v.passed for v in judge(case, counts(wrong)))
 
 
+def test_a_fitted_order_uses_all_resolutions():
+    def uneven(n):  # second order on the whole, but one mesh in the middle is lucky
+        return replace(trapezium(n), quantities={"integral": n**-2.0 * (0.5 if n == 20 else 1.0)})
+
+    for fitted, wanted in ((False, {"order"}), (True, set())):
+        band = OrderBand(1.5, 2.5, fitted=fitted)
+        case = toy(checks=(Check("bond/trapezium", "integral", order=band),))
+        assert failed_kinds(case, uneven) == wanted
+    assert failed_kinds(case, lambda n: trapezium(n, 1.01)) == {"order"}
+    broken = outcomes(trapezium)
+    broken["bond/trapezium"][40] = replace(trapezium(40), quantities={"integral": math.nan})
+    assert not next(v for v in judge(case, broken) if v.kind == "order").passed
+
+
 def test_nan_and_missing_quantities_fail():
     nan = replace(trapezium(10), quantities={"integral": math.nan})
     none = replace(trapezium(10), quantities={})

@@ -25,6 +25,12 @@ def test_quick_level(case: Case, measurements):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_standard_level(case: Case, measurements):
+    assert not complaints(measurements.of(case, Level.STANDARD))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_papers_resolution(case: Case, measurements):
     result = measurements.of(case, Level.PAPER)
     assert not complaints(result)
