@@ -108,7 +108,7 @@ def treat(body: Loose, n: int) -> Measurement:
 
     found = {
         "refused": float(body.says in refusal(load=_elsewhere)),
-        "load refused": float("a load acts where" in refusal(loose="drop")),
+        "load refused": float("a load acts on a part that nothing holds" in refusal(loose="drop")),
     }
     scene = broken.scene(material, n, body.broken, load=_elsewhere, loose="drop")
     solution = scene.solve(tolerance=TOLERANCE)

@@ -41,17 +41,27 @@ def energy_of_wave(family: Family, moduli: ElasticModuli, k: Array) -> Array:
     return axial + (weight * moduli.shear * shear) @ shear.conj().T
 
 
+def energy_of_strain(family: Family, moduli: ElasticModuli) -> Array:
+    """Quadratic form of a homogeneous strain (ε11, ε22, 2 ε12) and rotation, (4, 4)."""
+    (c, s), weight = family.normal.T, 0.5 * family.weight * family.cell * family.length
+    zero, one = np.zeros_like(c), np.ones_like(c)
+    stretch = np.array([c * c, s * s, c * s, zero])
+    shear = np.array([-c * s, c * s, 0.5 * (c * c - s * s), -one])
+    axial = (weight * moduli.normal * stretch) @ stretch.T
+    return axial + (weight * moduli.shear * shear) @ shear.T
+
+
 def is_unstable(family: Family, moduli: ElasticModuli, k: Array) -> bool:
     """Whether displacements of this wave lack positive energy once rotations have adjusted.
 
-    By inertia: condensing a rotation of stiffness h leaves a positive block exactly if the whole
+    The longest wave, k = 0, stands for homogeneous strains. By inertia: condensing a rotation of stiffness h leaves a positive block exactly if the whole
     has as many negative eigenvalues as h. A rotation without stiffness counts as unstable.
     """
-    whole = energy_of_wave(family, moduli, k)
+    whole = energy_of_wave(family, moduli, k) if np.any(k) else energy_of_strain(family, moduli)
     scale = np.abs(whole).max()
     if not np.any(moduli.shear):
-        return bool(np.linalg.eigvalsh(whole[:2, :2])[0] <= 1e-9 * scale)
-    own = whole[2, 2].real
+        return bool(np.linalg.eigvalsh(whole[:-1, :-1])[0] <= 1e-9 * scale)
+    own = whole[-1, -1].real
     if abs(own) <= 1e-8 * scale:
         return True
     eigenvalues = np.linalg.eigvalsh(whole)

@@ -62,6 +62,18 @@ def test_instability_of_a_wave(nu, unstable):
     assert symbols.is_unstable(family, moduli, np.array([0.91, 0.0])) == unstable
 
 
+@pytest.mark.parametrize("law", [None, UniformShear()])
+def test_the_energy_of_a_strain_is_the_tensor(law):
+    voigt, family = materials.TENSORS["Fig. 2"], Family(3)
+    moduli = calibrate(family, ElasticTensor(voigt), "lattice", law)
+    whole = symbols.energy_of_strain(family, moduli)
+    condensed = whole[:3, :3] - np.outer(whole[:3, 3], whole[3, :3]) / whole[3, 3]
+    np.testing.assert_allclose(condensed, voigt, atol=1e-12)
+    assert not symbols.is_unstable(family, moduli, np.zeros(2))
+    inverted = type(moduli)(-moduli.normal, moduli.shear)
+    assert symbols.is_unstable(family, inverted, np.zeros(2))
+
+
 @few
 @given(st.integers(0, 10**6), st.sampled_from([2, 3]))
 def test_linear_program_agrees_with_the_solver_on_existence(seed, m):
