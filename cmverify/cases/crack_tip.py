@@ -348,7 +348,7 @@ CASES = (
         "II",
         Problem(0.0, 1.0),
         {30: 1.5e-2, 60: 6.2e-3, 120: 2.5e-3},
-        "The sliding mode converges at the same rate with about three times the error: the free "
-        "faces, which shear most, carry it.",
+        "The sliding mode converges at the same rate with about three times the error, which sits "
+        "at the tip and along the free faces.",
     ),
 )

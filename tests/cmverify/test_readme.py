@@ -1,0 +1,41 @@
+"""What the README shows works as it is written."""
+
+import re
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from cmverify.cases import registry
+from cmverify.cli import app
+
+ROOT = Path(__file__).parents[2]
+TEXT = (ROOT / "README.md").read_text()
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", TEXT, re.DOTALL)
+
+
+def test_the_scene_of_the_readme_is_solved():
+    (code,) = [block for block in blocks("python") if block.startswith("from solver")]
+    names: dict = {}
+    exec(code, names)  # a coarser grid would be another scene: this one takes under a second
+    x, y = names["solution"].points.T
+    exact = x**3 / 5 - x**2 * y + x * y**2 + y**3 / 3
+    assert abs(names["solution"].temperature - exact).max() < 1e-10
+
+
+def test_commands_of_the_readme_exist():
+    lines = [line for block in blocks("sh") for line in block.splitlines()]
+    found = {m[1] for line in lines if (m := re.match(r"(?:.*/)?cmverify (\w+)", line))}
+    assert {"run", "list", "report", "solve", "doctor"} <= found
+    for command in found:
+        assert CliRunner().invoke(app, [command, "--help"]).exit_code == 0
+    for name in re.findall(r"cmverify (?:run|precision) ([a-z][\w-]+)", "\n".join(lines)):
+        assert registry.select([name])
+
+
+@pytest.mark.parametrize("link", re.findall(r'src="([^"]+)"', TEXT))
+def test_figures_of_the_readme_are_there_and_small(link):
+    assert 0 < (ROOT / link).stat().st_size < 300_000
