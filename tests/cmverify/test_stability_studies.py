@@ -136,3 +136,14 @@ def test_command_fails_where_nothing_confirms(tmp_path, monkeypatch):
     monkeypatch.setattr(symbols, "is_unstable", lambda *_: True)
     given = ["stability", "--material", "silicon", "--m", "2", "--out", str(tmp_path)]
     assert cli.invoke(app, given).exit_code == 1
+
+
+def test_a_report_links_to_the_page_beside_it(tmp_path):
+    from cmverify.environment import describe
+    from cmverify.report.build import build
+    from cmverify.summary import RunInfo
+
+    info = RunInfo("quick", 1, 1, "cmverify run", "now", 1.0, describe().as_dict())
+    assert "stability.html" not in build([], info, tmp_path).read_text()
+    (tmp_path / "stability.html").write_text("x")
+    assert 'href="stability.html"' in build([], info, tmp_path).read_text()

@@ -54,8 +54,9 @@ def energy_of_strain(family: Family, moduli: ElasticModuli) -> Array:
 def is_unstable(family: Family, moduli: ElasticModuli, k: Array) -> bool:
     """Whether displacements of this wave lack positive energy once rotations have adjusted.
 
-    The longest wave, k = 0, stands for homogeneous strains. By inertia: condensing a rotation of stiffness h leaves a positive block exactly if the whole
-    has as many negative eigenvalues as h. A rotation without stiffness counts as unstable.
+    The longest wave, k = 0, stands for homogeneous strains. By inertia: condensing a rotation of
+    stiffness h leaves a positive block exactly if the whole has as many negative eigenvalues as
+    h. A rotation without stiffness counts as unstable.
     """
     whole = energy_of_wave(family, moduli, k) if np.any(k) else energy_of_strain(family, moduli)
     scale = np.abs(whole).max()
