@@ -17,8 +17,9 @@ from references.fem.evaluation import (
     dirichlet_points,
     to_skfem,
 )
-from references.fem.linear import solve_with_prescribed
 from references.fem.mesh import Mesh
+from references.fem.restraint import require_temperature
+from references.linear import solve_with_prescribed
 
 Scalar = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike] | float
 
@@ -91,8 +92,8 @@ def steady_conduction(
     Raises
     ------
     ValueError
-        For a conductivity that is not positive definite, an unknown boundary, or no boundary at
-        all (the temperature would be determined up to a constant only).
+        For a conductivity that is not positive definite, an unknown boundary, or no prescribed
+        temperature on a part of the body (it would be determined up to a constant only).
 
     Examples
     --------
@@ -130,11 +131,12 @@ def steady_conduction(
     if callable(source) or source != 0:
         load = heating.assemble(basis)
     nodes = basis.doflocs.T
-    where = dirichlet_points(mesh, nodes)
+    where = dirichlet_points(mesh, nodes, basis.element_dofs)
     values = np.full(basis.N, np.nan)
     for name, temperature in prescribed.items():
         dofs = basis.get_dofs(facets[name]).flatten()
         values[dofs] = evaluate(temperature, *where[dofs].T)
+    require_temperature(nodes, basis.element_dofs, ~np.isnan(values))
     assembled = time.perf_counter()
     solution, unknowns = solve_with_prescribed(stiffness, load, values)
     return ConductionSolution(

@@ -17,8 +17,9 @@ from references.fem.evaluation import (
     dirichlet_points,
     to_skfem,
 )
-from references.fem.linear import solve_with_prescribed
 from references.fem.mesh import Mesh
+from references.fem.restraint import require_held, rigid_motions
+from references.linear import solve_with_prescribed
 
 Vector = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike] | ArrayLike
 
@@ -135,9 +136,12 @@ def solve_elasticity(
     Raises
     ------
     ValueError
-        For a stiffness that is not positive definite, an unknown boundary, or loads out of balance
-        on a body that nothing holds. (Where they balance to 0.1 %, what is left is spread over all
-        nodes, and three components are pinned to take the rigid motion out.)
+        For a stiffness that is not positive definite, an unknown boundary, supports that leave a
+        part of the body a rigid motion (the message names it), or loads out of balance on a body
+        without supports. (Where they balance to 0.1 %, what is left is spread over all nodes, and
+        three components are pinned to take the rigid motion out.)
+    FloatingPointError
+        If the equations cannot be solved to nine digits.
     """
     check_order(order)
     check_mesh(mesh)
@@ -160,16 +164,19 @@ def solve_elasticity(
         load += _traction_load(basis, facets[name], traction)
     if body_force is not None:
         load += _body_load(basis, body_force)
-    where = dirichlet_points(mesh, nodes)
     owner = np.empty(basis.N, dtype=np.int64)
     owner[dofs] = np.arange(len(dofs))[:, None]
+    element_nodes = owner[basis.element_dofs[::2]]
+    where = dirichlet_points(mesh, nodes, element_nodes)
     values = np.full(basis.N, np.nan)
     for name, given in prescribed.items():
         held = np.unique(owner[basis.get_dofs(facets[name]).flatten()])
         wanted = evaluate_vector(given, *where[held].T)
         values[dofs[held]] = np.where(np.isnan(wanted), values[dofs[held]], wanted)
     if not prescribed:
+        rigid_motions(nodes, element_nodes, ~np.isnan(values[dofs]))
         _pin(values, dofs, nodes, load)
+    require_held(nodes, element_nodes, ~np.isnan(values[dofs]))
     assembled = time.perf_counter()
     solution, unknowns = solve_with_prescribed(stiffness, load, values)
     end = time.perf_counter()
@@ -178,7 +185,7 @@ def solve_elasticity(
         order=order,
         nodes=nodes,
         values=solution[dofs],
-        element_dofs=owner[basis.element_dofs[::2]],
+        element_dofs=element_nodes,
         triangles=basis.mesh.t.T,
         voigt=stiffness_tensor,
         unknowns=unknowns,

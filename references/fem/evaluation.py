@@ -180,19 +180,40 @@ def to_skfem(mesh: Mesh) -> tuple[skfem.MeshTri, dict[str, NDArray[np.int64]]]:
     return found, facets
 
 
-def dirichlet_points(mesh: Mesh, nodes: NDArray[np.float64]) -> NDArray[np.float64]:
+def dirichlet_points(
+    mesh: Mesh, nodes: NDArray[np.float64], element_nodes: NDArray[np.int64]
+) -> NDArray[np.float64]:
     """Node positions for prescribed values, on the right side of a slit.
 
     A node on a crack face has the position of its twin on the other face, where a field that
-    jumps has two values. Such nodes are moved by 1e-12 of an element into their own triangles.
+    jumps has two values. Such nodes, vertices and mid-sides, are moved into the elements that own
+    them by 1e-12 of those elements, or by some rounding errors of the coordinates if that is more
+    (else an inclined face would not feel it).
+
+    Parameters
+    ----------
+    mesh : Mesh
+    nodes : (n, 2) float array
+        Vertices, numbered as in the mesh, then mid-sides.
+    element_nodes : (3 or 6, M) int array
+        In scikit-fem's order: corners, then the middles of edges 01, 12, 02.
     """
     moved = nodes.copy()
     if "crack" not in mesh.boundaries:
         return moved
-    vertices = mesh.nodes("crack")
-    corners = mesh.points[mesh.triangles]
-    inward = np.zeros((len(mesh.points), 2))
-    for i in range(3):
-        np.add.at(inward, mesh.triangles[:, i], corners.mean(axis=1) - corners[:, i])
-    moved[vertices] += 1e-12 * inward[vertices]
+    faces = np.zeros(len(nodes), dtype=bool)
+    faces[mesh.nodes("crack")] = True
+    if len(element_nodes) == 6:
+        number = len(mesh.points)
+        crack = np.sort(mesh.boundaries["crack"], axis=1) @ [number, 1]
+        for middle, ends in enumerate(((0, 1), (1, 2), (0, 2)), start=3):
+            edge = np.sort(element_nodes[list(ends)], axis=0).T @ [number, 1]
+            faces[element_nodes[middle][np.isin(edge, crack)]] = True
+    centroids = nodes[element_nodes[:3]].mean(axis=0)
+    inward = np.zeros((len(nodes), 2))
+    for row in element_nodes:
+        np.add.at(inward, row, centroids - nodes[row])
+    length = np.hypot(*inward[faces].T)[:, None]
+    rounding = 64 * np.finfo(float).eps * np.abs(nodes).max()
+    moved[faces] += np.maximum(1e-12, rounding / length) * inward[faces]
     return moved

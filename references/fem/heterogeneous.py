@@ -15,10 +15,10 @@ import skfem
 from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csr_matrix, hstack
 
+from references.eigen import RIGID_MOTIONS, elastic_frequencies
 from references.fem.elasticity import component_dofs, strain
-from references.fem.linear import factorise
-from references.fem.modes import RIGID_MOTIONS
-from references.lattice.blocks import BlockLattice, TetrachiralCell, elastic_frequencies
+from references.lattice.blocks import BlockLattice, TetrachiralCell
+from references.linear import factorise
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,8 @@ from references.fem.evaluation import (
     dirichlet_points,
     to_skfem,
 )
-from references.fem.linear import factorise
 from references.fem.mesh import Mesh
+from references.linear import factorise
 
 InTime = Callable[[NDArray[np.float64], NDArray[np.float64], float], ArrayLike]
 
@@ -133,7 +133,7 @@ def transient_conduction(
         for name in mesh.outer:
             held[basis.get_dofs(facets[name]).flatten()] = True
     free = ~held
-    x, y = dirichlet_points(mesh, basis.doflocs.T).T
+    x, y = dirichlet_points(mesh, basis.doflocs.T, basis.element_dofs).T
 
     def edge(t: float) -> NDArray[np.float64] | float:
         if callable(boundary_temperature):

@@ -15,10 +15,12 @@ import numpy as np
 import skfem
 from numpy.typing import ArrayLike, NDArray
 
+from references.eigen import elastic_part
 from references.fem.conduction import Scalar, check_conductivity, evaluate
 from references.fem.elasticity import Vector, check_voigt, evaluate_vector
 from references.fem.evaluation import ELEMENTS, check_order, dirichlet_points, to_skfem
 from references.fem.mesh import Mesh
+from references.fem.restraint import require_held, require_temperature, rigid_motions
 
 VARIABLE = "CMVERIFY_FENICSX_PYTHON"
 INSTALL = (
@@ -176,6 +178,7 @@ class _Numbering:
     """Nodes as scikit-fem numbers them, so that answers compare node by node."""
 
     nodes: NDArray[np.float64]
+    element_nodes: NDArray[np.int64]
     on: Mapping[str, NDArray[np.int64]]
     problem: dict[str, ArrayLike]
 
@@ -194,7 +197,7 @@ def _number(mesh: Mesh, order: int) -> _Numbering:
         "tractions": 0,
     }
     on = {name: basis.get_dofs(found).flatten() for name, found in facets.items()}
-    return _Numbering(nodes, on, problem)
+    return _Numbering(nodes, basis.element_dofs, on, problem)
 
 
 def steady_conduction(
@@ -210,7 +213,7 @@ def steady_conduction(
     The source is interpolated at the nodes: exact for polynomials up to the elements' order.
     """
     numbering = _number(mesh, order)
-    x, y = dirichlet_points(mesh, numbering.nodes).T
+    x, y = dirichlet_points(mesh, numbering.nodes, numbering.element_nodes).T
     prescribed = np.full((len(x), 1), np.nan)
     if isinstance(boundary_temperature, Mapping):
         given: dict[str, Scalar] = dict(boundary_temperature)
@@ -220,6 +223,7 @@ def steady_conduction(
         mesh.nodes(name)
         held = numbering.on[name]
         prescribed[held, 0] = evaluate(temperature, x[held], y[held])
+    require_temperature(numbering.nodes, numbering.element_nodes, ~np.isnan(prescribed[:, 0]))
     problem = {
         **numbering.problem,
         "physics": "conduction",
@@ -245,7 +249,7 @@ def solve_elasticity(
     order.
     """
     numbering = _number(mesh, order)
-    x, y = dirichlet_points(mesh, numbering.nodes).T
+    x, y = dirichlet_points(mesh, numbering.nodes, numbering.element_nodes).T
     prescribed = np.full((len(x), 2), np.nan)
     if isinstance(displacement, Mapping):
         given: dict[str, Vector] = dict(displacement)
@@ -256,6 +260,7 @@ def solve_elasticity(
         held = numbering.on[name]
         values = evaluate_vector(wanted, x[held], y[held])
         prescribed[held] = np.where(np.isnan(values), prescribed[held], values)
+    require_held(numbering.nodes, numbering.element_nodes, ~np.isnan(prescribed))
     problem = {
         **numbering.problem,
         "physics": "elasticity",
@@ -288,7 +293,7 @@ def in_plane_frequencies(
         mesh.nodes(name)
         prescribed[numbering.on[name]] = 0.0
     tensor = check_voigt(voigt)
-    rigid = 0 if clamped else 3
+    rigid = rigid_motions(numbering.nodes, numbering.element_nodes, ~np.isnan(prescribed))
     extent = np.ptp(mesh.points, axis=0).max()
     problem = {
         **numbering.problem,
@@ -299,4 +304,4 @@ def in_plane_frequencies(
         "count": count + rigid,
         "shift": -float(np.linalg.eigvalsh(tensor)[0] / (density * extent**2)),
     }
-    return np.sqrt(run(problem, processes)["eigenvalues"][rigid:])
+    return elastic_part(run(problem, processes)["eigenvalues"], rigid)

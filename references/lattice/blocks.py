@@ -10,13 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import eigh
 from scipy.sparse import coo_matrix, csr_matrix, diags
 
-from references.fem.modes import RIGID_MOTIONS, smallest_eigenpairs
-
-# below this many unknowns a dense eigensolver is as quick and leaves no doubt
-_DENSE = 600
+from references.eigen import RIGID_MOTIONS, elastic_frequencies
 
 
 @dataclass(frozen=True)
@@ -205,6 +201,7 @@ class BlockLattice:
         held: NDArray[np.bool_] | None = None,
         interface: NDArray[np.float64] | None = None,
         mass: csr_matrix | None = None,
+        **solver: float,
     ) -> NDArray[np.float64]:
         """Lowest elastic circular frequencies, rad/s.
 
@@ -217,6 +214,8 @@ class BlockLattice:
             The spring bed unless given.
         mass : sparse matrix, optional
             Rigid squares unless given.
+        **solver
+            ``shift`` and ``dense`` of :func:`references.eigen.elastic_frequencies`.
 
         Raises
         ------
@@ -230,25 +229,4 @@ class BlockLattice:
             free = np.repeat(~np.asarray(held, dtype=bool), 3)
             stiffness, inertia = stiffness[free][:, free], inertia[free][:, free]
             rigid = 0
-        return elastic_frequencies(stiffness, inertia, count, rigid)
-
-
-def elastic_frequencies(
-    stiffness: csr_matrix, mass: csr_matrix, count: int, rigid: int
-) -> NDArray[np.float64]:
-    """√λ of K x = λ M x without the first ``rigid`` ones, checked to be rigid."""
-    size = stiffness.shape[0]
-    wanted = count + rigid
-    if count < 1 or wanted > size:
-        raise ValueError(f"{count} elastic modes asked for, {max(size - rigid, 0)} exist")
-    if size <= _DENSE or wanted >= size - 1:
-        values = eigh(
-            stiffness.toarray(), mass.toarray(), eigvals_only=True, subset_by_index=[0, wanted - 1]
-        )
-    else:
-        # far below the first elastic eigenvalue, far above rounding
-        scale = stiffness.diagonal().sum() / mass.diagonal().sum()
-        values, _ = smallest_eigenpairs(stiffness, mass, wanted, -1e-6 * scale)
-    if rigid and abs(values[rigid - 1]) > 1e-6 * values[rigid]:
-        raise FloatingPointError("a free lattice has three rigid motions; one was lost")
-    return np.sqrt(values[rigid:])
+        return elastic_frequencies(stiffness, inertia, count, rigid, **solver)  # type: ignore[arg-type]

@@ -118,6 +118,49 @@ def test_a_component_may_stay_free() -> None:
     assert np.allclose(s.stress_at([[0.3, 0.1]]), [[0.1, 0, 0]], atol=1e-12)
 
 
+def test_a_jumping_field_prescribed_on_both_crack_faces() -> None:
+    """Mid-side nodes of the faces need the value of their own face as vertices do."""
+    exact, p = k_field(C, 1, 0), points()
+    for angle in (0.0, 0.7):
+        c, s = np.cos(angle), np.sin(angle)
+
+        def turned(x: NDArray, y: NDArray, c: float = c, s: float = s) -> NDArray:
+            return exact(c * x + s * y, c * y - s * x)
+
+        mesh = disc(0.1, cracks=[((-c, -s), (0.0, 0.0))], tip_size=1e-3)
+        # on every boundary: then the tensor's axes do not matter much, the faces do
+        found = solve_elasticity(mesh, C, {"circle": turned, "crack": turned})
+        q = p @ [[c, s], [-s, c]]
+        away = np.hypot(*q.T) < 0.98
+        if angle == 0:
+            assert relative(found.at(q[away]), exact(*p[away].T)) < 1.7e-4
+        # beside the faces the prescribed values must come back, whatever the tensor
+        r = np.linspace(0.1, 0.9, 40)
+        for side in (1e-6, -1e-6):
+            beside = np.column_stack([-r, np.full_like(r, side)])
+            there = found.at(beside @ [[c, s], [-s, c]])
+            assert relative(there, exact(*beside.T)) < 1e-3
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_rigid_motions_that_supports_leave_are_refused_by_name(order: int) -> None:
+    square = rectangle(1, 1, 0.25)
+    with pytest.raises(ValueError, match=r"rigid motions free: translation along axis 2$"):
+        solve_elasticity(square, C, {"left": (0, np.nan)}, {"right": (1, 1)}, order=order)
+    pull = {"top": (0, 1), "bottom": (0, -1)}
+    with pytest.raises(ValueError, match=r"translation along axis 2$"):
+        solve_elasticity(square, C, {"left": (0, np.nan)}, pull, order=order)
+    with pytest.raises(ValueError, match=r"translation along axis 1 and .* axis 2 and rotation$"):
+        solve_elasticity(square, C, {"left": (np.nan, np.nan)}, {"right": (1, 0)}, order=order)
+    cut = rectangle(1, 1, 0.25, cracks=[((0, -0.5), (0, 0.5))])
+    with pytest.raises(ValueError, match=r"the part about \(0\.2.*rotation$"):
+        solve_elasticity(cut, C, {"left": (0, 0)}, {"right": (1, 0)}, order=order)
+    with pytest.raises(ValueError, match="this one has 6: it is in 2 parts"):
+        solve_elasticity(cut, C, tractions={"left": (-1, 0), "right": (1, 0)}, order=order)
+    # both parts held: nothing to complain about
+    solve_elasticity(cut, C, {"left": (0, 0), "right": (0, 0)}, {"top": (0, 1)}, order=order)
+
+
 def test_a_tensor_that_is_one_per_cent_off_is_seen() -> None:
     p, exact = points(), k_field(C, 1, 0)
     off = C.copy()

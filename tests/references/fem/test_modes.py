@@ -77,5 +77,10 @@ def test_bad_input_is_refused() -> None:
         in_plane_frequencies(np.diag([1.0, 0, 1]), 1, 1, 1.0, 3)
     with pytest.raises(ValueError, match="too many"):
         in_plane_frequencies(ANISOTROPIC, 1, 1, 1.0, 500, elements=2)
+    cut = rectangle(1, 1, 0.25, cracks=[((0, -0.5), (0, 0.5))])
+    with pytest.raises(ValueError, match="this one has 6"):
+        in_plane_modes(cut, ANISOTROPIC, 1.0, 3)
+    with pytest.raises(ValueError, match="rigid motions free"):
+        in_plane_modes(cut, ANISOTROPIC, 1.0, 3, ("left",))
     with pytest.raises(ValueError, match="at least one mode"):
         in_plane_frequencies(ANISOTROPIC, 1, 1, 1.0, 0)
