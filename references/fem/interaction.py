@@ -1,7 +1,7 @@
 """Stress intensity factors by the interaction integral, for any plane anisotropic tensor.
 
-F. Wang, D. Yau and H. T. Corten's method (J. F. Yau et al., J. Appl. Mech. 47 (1980) 335) in its
-domain form: with the auxiliary fields of pure modes,
+J. F. Yau, S. S. Wang and H. T. Corten's method (J. Appl. Mech. 47 (1980) 335) in its domain form:
+with the auxiliary fields of pure modes,
 
     M = ∫ [σ_ij u'_i,1 + σ'_ij u_i,1 − σ_ik ε'_ik δ_1j] q,j dA = 2 Kᵀ A K',
 
@@ -24,6 +24,7 @@ from references.analytic.voigt import turned_axes
 from references.fem.elasticity import ElasticSolution
 from references.fem.evaluation import ELEMENTS
 from references.fem.mesh import Mesh
+from references.fem.slit import boundary_edges
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,9 @@ def stress_intensity(
     Raises
     ------
     ValueError
-        If the ring is coarser than the mesh, or there is no crack tip of the mesh at ``tip``.
+        If the ring is coarser than the mesh, there is no crack tip of the mesh at ``tip``, the
+        crack does not arrive there straight and along ``angle`` within ``radius``, or an edge of
+        the body or another tip lies within it.
     """
     at = np.asarray(tip, dtype=float)
     if at.shape != (2,) or not np.isfinite(at).all() or not np.isfinite(angle):
@@ -70,6 +73,7 @@ def stress_intensity(
         raise ValueError(f"the mesh has no crack tip at ({at[0]:g}, {at[1]:g})")
     if not 0 < inner < 1:
         raise ValueError("the ring's inner radius must be a fraction of the outer one")
+    _require_straight_crack(solution.mesh, at, float(angle), radius)
     ring = _ring_elements(solution, at, inner * radius, radius)
     x, gradient, weight = _quadrature(solution, ring)
     turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
@@ -95,6 +99,35 @@ def stress_intensity(
     k1, k2 = np.linalg.solve(2 * np.array([[g11, g12], [g12, g22]]), products)
     rate = energy_release_rate(voigt, float(k1), float(k2))
     return StressIntensity(float(k1), float(k2), rate, solution.mesh)
+
+
+def _require_straight_crack(
+    mesh: Mesh, tip: NDArray[np.float64], angle: float, radius: float
+) -> None:
+    """Raise ValueError unless the ring holds the body and one straight crack along the angle."""
+    others = np.hypot(*(mesh.tips - tip).T)
+    if np.any((others > 1e-6 * radius) & (others < radius)):
+        raise ValueError("another crack tip lies within the integration ring: use a smaller radius")
+    edges = np.sort(boundary_edges(mesh.triangles), axis=1)
+    key = np.array([len(mesh.points), 1])
+    face = np.isin(edges @ key, np.sort(mesh.boundaries["crack"], axis=1) @ key)
+    start, end = (mesh.points[edges[:, i]] - tip for i in range(2))
+    along = end - start
+    nearest = np.clip(-np.sum(start * along, axis=1) / np.sum(along**2, axis=1), 0, 1)
+    near = np.hypot(*(start + nearest[:, None] * along).T) < radius * (1 - 1e-9)
+    if np.any(near & ~face):
+        raise ValueError(
+            "the integration ring leaves the body: an edge that is no crack face lies within its"
+            " radius"
+        )
+    behind = -np.array([np.cos(angle), np.sin(angle)])
+    for ends in (start[near], end[near]):
+        across = behind[0] * ends[:, 1] - behind[1] * ends[:, 0]
+        if np.any(np.abs(across) > 1e-6 * radius) or np.any(ends @ behind < -1e-6 * radius):
+            raise ValueError(
+                "within the integration ring the crack is not a straight line that arrives at the"
+                f" tip along the angle {angle:g}: wrong angle, or a kink or another crack"
+            )
 
 
 def _matrix(voigt_stress: NDArray[np.float64]) -> NDArray[np.float64]:

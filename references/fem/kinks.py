@@ -76,6 +76,8 @@ def kink_matrix(
     """
     mesh = kink_mesh(angle, kink, growth) if mesh is None else mesh
     tip = mesh.tips[0]
+    # a kink that turns back comes near the old crack, which the ring must not touch
+    ring = kink * (0.7 if abs(angle) <= np.pi / 2 else min(0.7, 0.9 * float(np.sin(abs(angle)))))
     columns = []
     for mode in ((1.0, 0.0), (0.0, 1.0)):
 
@@ -83,7 +85,7 @@ def kink_matrix(
             return crack_tip_displacement(voigt, x, y, *mode)
 
         solution = solve_elasticity(mesh, voigt, field)
-        found = stress_intensity(solution, tip, float(angle), 0.7 * kink)
+        found = stress_intensity(solution, tip, float(angle), ring)
         columns.append([found.KI, found.KII])
     return np.array(columns).T
 

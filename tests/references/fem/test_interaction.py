@@ -12,7 +12,7 @@ from references.fem.cracked_plates import (
 )
 from references.fem.elasticity import ElasticSolution, solve_elasticity
 from references.fem.interaction import stress_intensity
-from references.fem.mesh import crack_tip_disc, disc
+from references.fem.mesh import crack_tip_disc, disc, rectangle
 
 C = np.array([[1, 1 / 5, 1 / 10], [1 / 5, 4 / 5, 1 / 6], [1 / 10, 1 / 6, 1 / 3]])
 ISOTROPIC = np.array([[1, 0.3, 0], [0.3, 1, 0], [0, 0, 0.35]]) / 0.91
@@ -114,6 +114,39 @@ def test_energy_balance_of_an_anisotropic_plate() -> None:
 def test_one_per_cent_is_seen() -> None:
     solution = tip_problem(1.01, -0.6)
     assert stress_intensity(solution, (0, 0), 0.0, 0.6).KI > 1.008
+
+
+def test_a_ring_that_leaves_the_body_or_meets_another_crack_is_refused() -> None:
+    inside, outside = tip_problem(1.0, 0.0), "ring leaves the body"
+    stress_intensity(inside, (0, 0), 0.0, 0.98)
+    with pytest.raises(ValueError, match=outside):
+        stress_intensity(inside, (0, 0), 0.0, 1.02)
+    # the outer edge is farther than the radius, a hole's is not
+    holed = rectangle(2, 2, 0.1, [(0.5, 0.0, 0.2)], [((-1, 0), (0, 0))], tip_size=0.01)
+    pull = {"top": (0, 1), "bottom": (0, -1)}
+    solution = solve_elasticity(holed, C, tractions=pull)
+    stress_intensity(solution, (0, 0), 0.0, 0.28)
+    with pytest.raises(ValueError, match=outside):
+        stress_intensity(solution, (0, 0), 0.0, 0.35)
+    centre = rectangle(2, 2, 0.1, cracks=[((-0.2, 0), (0.2, 0))], tip_size=0.01)
+    solution = solve_elasticity(centre, C, tractions=pull)
+    stress_intensity(solution, (0.2, 0), 0.0, 0.38)
+    with pytest.raises(ValueError, match="another crack tip"):
+        stress_intensity(solution, (0.2, 0), 0.0, 0.45)
+
+
+@pytest.mark.parametrize("angle", [0.01, np.pi, -np.pi / 2])
+def test_a_crack_that_does_not_arrive_along_the_angle_is_refused(angle: float) -> None:
+    with pytest.raises(ValueError, match="not a straight line"):
+        stress_intensity(tip_problem(1.0, 0.0, 0.2), (0, 0), angle, 0.6)
+
+
+def test_a_kink_within_the_ring_is_refused() -> None:
+    mesh = rectangle(2, 2, 0.1, cracks=[((-1, 0), (0, 0)), ((0, 0), (0.2, 0.2))], tip_size=0.01)
+    solution = solve_elasticity(mesh, C, tractions={"top": (0, 1), "bottom": (0, -1)})
+    stress_intensity(solution, (0.2, 0.2), np.pi / 4, 0.27)
+    with pytest.raises(ValueError, match="not a straight line"):
+        stress_intensity(solution, (0.2, 0.2), np.pi / 4, 0.35)
 
 
 def test_bad_input_is_refused() -> None:

@@ -42,6 +42,14 @@ def test_an_anisotropic_kink_straight_ahead_changes_nothing() -> None:
     assert np.abs(almost - np.eye(2)).max() < 2e-3
 
 
+def test_a_kink_that_turns_back_keeps_clear_of_the_old_crack() -> None:
+    """At 145° the old face is 0.57 of the kink away: a ring of 0.7 would reach across it."""
+    back = kink_matrix(ISOTROPIC, np.radians(145), 0.01)
+    # mirrored, the terms that couple the modes change sign
+    mirrored = kink_matrix(ISOTROPIC, np.radians(-145), 0.01) * [[1, -1], [-1, 1]]
+    assert np.allclose(back, mirrored, atol=2e-3)
+
+
 def table(angles: NDArray) -> KinkTable:
     """From the series: tests the table without meshes."""
     return KinkTable(ISOTROPIC, angles, np.stack([amestoy_leblond(w) for w in angles]))
