@@ -55,17 +55,17 @@ def warm_up() -> None:
 def solve(body: Body, n: int) -> Measurement:
     """Solve, and compare with a factorisation; or be refused, and look at the spectrum."""
     from solver import NegativeCurvatureError
+    from solver.statics import solve as solve_statics
 
     material = body.material()
-    scene = broken.scene(
+    discretisation = broken.scene(
         material, n, broken.at_random(body.share), body.m, calibration=body.calibration
-    )
-    discretisation = scene.discretise()
+    ).discretise()
     unknowns = discretisation.operator.shape[0]
     negative = broken.negative_directions(discretisation)
     found = {"negative": float(negative)}
     try:
-        solution = scene.solve(tolerance=TOLERANCE)
+        solution = solve_statics(discretisation, tolerance=TOLERANCE)
     except NegativeCurvatureError:
         found |= {"refused": 1.0, "misjudged": float(negative == 0)}
         return Measurement(unknowns, found)
