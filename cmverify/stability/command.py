@@ -193,7 +193,8 @@ def _section(study: Study, fine: bool) -> Section:
         caption = f"Margin over E1/E2 and G12/E2, ν12 = {studies.NU12:g}, m = 5, by calibration."
         text = (
             "The paper's law loses the rotation stiffness of stiff plies; non-negative bonds keep "
-            "them stable wherever they exist."
+            "them stable, but for a strip where so few of them resist shear that rotations of "
+            "alternating sign strain none (law=UniformShear() spreads the shear)."
         )
     else:
         found = studies.conduction(fine)
