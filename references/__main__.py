@@ -14,6 +14,7 @@ from references.provenance import (
     DamagedReferenceError,
     Reference,
     build,
+    compare_with_catalogue,
     load,
     regenerate_and_compare,
 )
@@ -73,7 +74,10 @@ def build_(names: Names = None) -> None:
 
 @app.command()
 def check(names: Names = None) -> None:
-    """Verify checksums, regenerate what is cheap and compare; exit code 1 if anything is wrong."""
+    """Verify checksums and records, regenerate what is cheap and compare.
+
+    The exit code is 1 if anything is wrong.
+    """
     chosen = _chosen(names)
     wrong = 0
     with _progress() as progress:
@@ -83,6 +87,7 @@ def check(names: Names = None) -> None:
             start = time.perf_counter()
             try:
                 stored = load(reference.name)
+                compare_with_catalogue(reference, stored)
                 if reference.spot is None:
                     verdict = "checksum holds"
                 else:

@@ -1,6 +1,6 @@
 """How the stored references are made: each function returns arrays and their estimated errors."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,11 +9,12 @@ from references.analytic.lekhnitskii import crack_tip_displacement
 from references.fem.conduction import steady_conduction
 from references.fem.cracked_plates import centre_crack, compact_tension, edge_crack
 from references.fem.elasticity import solve_elasticity
-from references.fem.heterogeneous import heterogeneous_frequencies
+from references.fem.heterogeneous import heterogeneous_frequencies, interface_record
 from references.fem.kinks import kink_matrix, kink_mesh
 from references.fem.mesh import Mesh, crack_tip_disc, disc, rectangle
-from references.fem.modes import in_plane_frequencies, in_plane_modes
-from references.lattice.blocks import BlockLattice, cell_voigt, paper_cell
+from references.fem.mesh_record import MeshRecord
+from references.fem.modes import in_plane_modes
+from references.lattice.blocks import BlockLattice, TetrachiralCell, cell_voigt, paper_cell
 from references.provenance import Generated
 
 # Voigt stiffnesses, order 11, 22, 12.
@@ -45,53 +46,74 @@ def particles(spacing: float) -> NDArray[np.float64]:
     return grid[np.hypot(*grid.T) <= 1]
 
 
+def _homogenised(
+    cell: TetrachiralCell, pitches: int, count: int, free: bool, meshes: list[Mesh | MeshRecord]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Frequencies of the homogenised square, 40 and 20 elements along its side."""
+    side = pitches * cell.pitch
+    found = []
+    for elements in (40, 20):
+        mesh = rectangle(side, side, side / elements)
+        meshes.append(mesh)
+        clamped = () if free else mesh.outer
+        modes = in_plane_modes(mesh, cell_voigt(cell), cell.effective_density, count, clamped)
+        found.append(modes.frequencies)
+    return found[0], found[1]
+
+
+def _lattice(
+    lattice: BlockLattice, count: int, held: NDArray[np.bool_] | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Frequencies of the blocks, twice: the lattice is exact, what errs is the eigensolver.
+
+    The second time it is the sparse one with another shift, also for small lattices.
+    """
+    return lattice.frequencies(count, held), lattice.frequencies(
+        count, held, shift=1e-5, dense=False
+    )
+
+
+def _self_converged(
+    axis: Sequence[int], pairs: Mapping[str, Sequence[tuple[NDArray, NDArray]]]
+) -> tuple[dict[str, NDArray], dict[str, float]]:
+    """Arrays and errors of rows that were computed twice, fine and coarse, in each column."""
+    arrays, errors = {"cells": np.array(axis)}, {"cells": 0.0}
+    for name, rows in pairs.items():
+        fine, coarse = (np.array(side) for side in zip(*rows, strict=True))
+        arrays[name] = fine
+        errors[name] = max(_difference(fine, coarse), float(np.finfo(float).eps))
+    return arrays, errors
+
+
 def tetrachiral_free(cells: Sequence[int], count: int) -> Generated:
     """Free frequencies of square block lattices: spring beds, meshed interfaces, homogenised."""
     cell = paper_cell()
-    voigt = cell_voigt(cell)
-    found: dict[str, list[NDArray]] = {"lattice": [], "heterogeneous": [], "homogenised": []}
-    coarse: dict[str, list[NDArray]] = {"heterogeneous": [], "homogenised": []}
+    pairs: dict[str, list[tuple[NDArray, NDArray]]] = {
+        "lattice": [], "heterogeneous": [], "homogenised": []
+    }  # fmt: skip
+    meshes: list[Mesh | MeshRecord] = [interface_record(cell, across) for across in (8, 6)]
     for n in cells:
-        lattice, side = BlockLattice(cell, n, n), n * cell.pitch
-        found["lattice"].append(lattice.frequencies(count))
-        for into, across, elements in ((found, 8, 40), (coarse, 6, 20)):
-            into["heterogeneous"].append(heterogeneous_frequencies(lattice, count, across=across))
-            into["homogenised"].append(
-                in_plane_frequencies(
-                    voigt, side, side, cell.effective_density, count, elements=elements
-                )
-            )
-    arrays = {name: np.array(rows) for name, rows in found.items()}
-    errors = {name: _difference(arrays[name], np.array(rows)) for name, rows in coarse.items()}
-    return Generated(
-        {"cells": np.array(cells), **arrays}, {"cells": 0.0, "lattice": 1e-10, **errors}, order=2
-    )
+        lattice = BlockLattice(cell, n, n)
+        pairs["lattice"].append(_lattice(lattice, count))
+        fine, coarse = (heterogeneous_frequencies(lattice, count, across=k) for k in (8, 6))
+        pairs["heterogeneous"].append((fine, coarse))
+        pairs["homogenised"].append(_homogenised(cell, n, count, True, meshes))
+    return Generated(*_self_converged(cells, pairs), tuple(meshes), order=2)
 
 
 def tetrachiral_clamped(cells: Sequence[int], count: int) -> Generated:
     """Outer ring of blocks held, against the continuum clamped at (n − 1) ℓ and at n ℓ."""
     cell = paper_cell()
-    voigt = cell_voigt(cell)
-    rows: dict[str, list[NDArray]] = {"lattice": [], "continuum_n_minus_1": [], "continuum_n": []}
-    coarse: list[NDArray] = []
+    pairs: dict[str, list[tuple[NDArray, NDArray]]] = {
+        "lattice": [], "continuum_n_minus_1": [], "continuum_n": []
+    }  # fmt: skip
+    meshes: list[Mesh | MeshRecord] = []
     for n in cells:
         lattice = BlockLattice(cell, n, n)
-        rows["lattice"].append(lattice.frequencies(count, lattice.ring))
-        for into, side, elements in (
-            (rows["continuum_n_minus_1"], n - 1, 40),
-            (rows["continuum_n"], n, 40),
-            (coarse, n, 20),
-        ):
-            length = side * cell.pitch
-            into.append(
-                in_plane_frequencies(
-                    voigt, length, length, cell.effective_density, count, False, elements
-                )
-            )
-    arrays = {"cells": np.array(cells), **{k: np.array(v) for k, v in rows.items()}}
-    error = _difference(arrays["continuum_n"], np.array(coarse))
-    errors = {"cells": 0.0, "lattice": 1e-10, "continuum_n_minus_1": error, "continuum_n": error}
-    return Generated(arrays, errors, order=2)
+        pairs["lattice"].append(_lattice(lattice, count, lattice.ring))
+        for name, pitches in (("continuum_n_minus_1", n - 1), ("continuum_n", n)):
+            pairs[name].append(_homogenised(cell, pitches, count, False, meshes))
+    return Generated(*_self_converged(cells, pairs), tuple(meshes), order=2)
 
 
 def stress_intensity_table(
@@ -133,22 +155,43 @@ def stress_intensity_table(
 def kink_factors(material: str, degrees: Sequence[float]) -> Generated:
     """F(ω) of short kinks (see `references.fem.kinks`), extrapolated to vanishing length.
 
-    The error goes with the kink's length: 2 F(ε) − F(2 ε).
+    The error of F goes with the kink's length ε, so that 2 F(ε) − F(2 ε) is stored. It also
+    amplifies the meshes' own errors; the estimate is therefore made of extrapolated values, at
+    four angles from end to end of the table at most: their change with a coarser mesh, plus their
+    change from (ε, 2 ε) to (2 ε, 4 ε). Straight ahead F is the identity, which is what counts
+    there.
     """
-    voigt, meshes, found = MATERIALS[material], [], []
-    for angle in np.radians(degrees):
-        pair = [kink_mesh(angle, e) for e in (2e-4, 4e-4)]
-        found.append([kink_matrix(voigt, angle, mesh=mesh) for mesh in pair])
-        meshes += pair
-    short, twice = np.moveaxis(np.array(found), 1, 0)
-    straight = np.abs(np.array(degrees)) < 1e-9
-    matrices = np.where(straight[:, None, None], short, 2 * short - twice)
-    coarse = kink_matrix(voigt, np.radians(degrees[0]), 2e-4, growth=0.25)
-    # of the mesh, and of the extrapolation
-    error = max(_difference(short[0], coarse), 0.1 * _difference(short, twice))
+    voigt, lengths, angles = MATERIALS[material], (2e-4, 4e-4, 8e-4), np.radians(degrees)
+    meshes: list[Mesh] = []
+
+    def factors(angle: float, length: float, growth: float = 0.15) -> NDArray[np.float64]:
+        mesh = kink_mesh(angle, length, growth)
+        meshes.append(mesh)
+        return kink_matrix(voigt, angle, length, mesh=mesh)
+
+    straight = np.abs(angles) < 1e-9
+    kinked = np.flatnonzero(~straight)
+    sampled = kinked[np.unique(np.linspace(0, len(kinked) - 1, 4).round().astype(int))]
+    found, errors = [], []
+    for i, angle in enumerate(angles.tolist()):
+        short = factors(angle, lengths[0])
+        if straight[i]:
+            found.append(short)
+            errors.append(float(np.abs(short - np.eye(2)).max()))
+            continue
+        twice = factors(angle, lengths[1])
+        extrapolated = 2 * short - twice
+        found.append(extrapolated)
+        if i in sampled:
+            longer = 2 * twice - factors(angle, lengths[2])
+            coarse = 2 * factors(angle, lengths[0], 0.25) - factors(angle, lengths[1], 0.25)
+            errors.append(
+                float(np.abs(extrapolated - coarse).max() + np.abs(extrapolated - longer).max())
+            )
+    matrices = np.array(found)
     return Generated(
         {"degrees": np.array(degrees, dtype=float), "matrices": matrices},
-        {"degrees": 0.0, "matrices": error},
+        {"degrees": 0.0, "matrices": max(errors) / float(np.abs(matrices).max())},
         tuple(meshes),
         2,
     )

@@ -19,11 +19,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from references.fem.mesh import Mesh
+from references.fem.mesh_record import MeshRecord
 
 DATA = Path(__file__).with_name("data")
 _PACKAGES = ("numpy", "scipy", "scikit-fem", "gmsh")
 # same mesh, same code: what other rounding can do to a solution
 _ROUNDING = 1e-7
+# what a record holds; only the arguments and the meshes may be empty
+_RECORD: dict[str, Any] = {
+    "name": str,
+    "title": str,
+    "citation": str,
+    "generator": str,
+    "arguments": dict,
+    "versions": dict,
+    "element_order": int | None,
+    "meshes": list,
+    "estimated_error": dict,
+    "bytes": int,
+    "sha256": str,
+    "record_sha256": str,
+}
 
 
 class DamagedReferenceError(ValueError):
@@ -40,20 +56,26 @@ class Generated:
     errors : dict of str to float
         Estimated error of each array over its largest magnitude, by self-convergence; 0 for
         arguments such as angles or points.
-    meshes : tuple of Mesh
-        Their sizes and hashes go into the record.
+    meshes : tuple of Mesh or MeshRecord
+        Their sizes and hashes go into the record; none for what needs no mesh.
     order : int or None
-        Of the elements.
+        Of the elements; None without meshes.
     """
 
     arrays: Mapping[str, NDArray]
     errors: Mapping[str, float]
-    meshes: tuple[Mesh, ...] = ()
+    meshes: tuple[Mesh | MeshRecord, ...] = ()
     order: int | None = None
 
     def __post_init__(self) -> None:
         if set(self.arrays) != set(self.errors):
             raise ValueError("every array of a reference needs an estimated error")
+        if not all(np.isfinite(e) and e >= 0 for e in self.errors.values()):
+            raise ValueError("an estimated error is a finite number that is not negative")
+        if (self.order is None) != (not self.meshes):
+            raise ValueError(
+                "finite elements have an order and meshes to be recorded: both or none"
+            )
         for name, array in self.arrays.items():
             if not np.isfinite(array).all():
                 raise ValueError(f"the array {name!r} of a reference is not finite")
@@ -86,6 +108,11 @@ class Reference:
     arguments: Mapping[str, Any]
     spot: Mapping[str, Any] | None = field(default_factory=dict)
     axis: str | None = None
+
+    @property
+    def generator_name(self) -> str:
+        """Module and name of the generator."""
+        return f"{self.generator.__module__}.{self.generator.__qualname__}"
 
 
 @dataclass(frozen=True)
@@ -131,19 +158,11 @@ def build(reference: Reference, folder: Path = DATA) -> Stored:
         "name": reference.name,
         "title": reference.title,
         "citation": reference.citation,
-        "generator": f"{reference.generator.__module__}.{reference.generator.__qualname__}",
+        "generator": reference.generator_name,
         "arguments": json.loads(json.dumps(reference.arguments)),
         "versions": versions(),
         "element_order": made.order,
-        "meshes": [
-            {
-                "size": mesh.size,
-                "points": len(mesh.points),
-                "triangles": len(mesh.triangles),
-                "sha256": mesh.sha256,
-            }
-            for mesh in made.meshes
-        ],
+        "meshes": [MeshRecord.of(mesh).as_json() for mesh in made.meshes],
         "estimated_error": {k: float(f"{v:.3g}") for k, v in made.errors.items()},
         "bytes": len(content),
         "sha256": _sha256(content),
@@ -173,32 +192,90 @@ def load(name: str, folder: Path = DATA) -> Stored:
             raise DamagedReferenceError(f"{path}: the file is missing; {rebuild}")
     try:
         record = json.loads(about.read_text(encoding="utf-8"))
-        expected = {key: record[key] for key in ("sha256", "record_sha256", "bytes")}
+        _require_complete(record, name)
     except (ValueError, KeyError, TypeError) as error:
         raise DamagedReferenceError(
             f"{about}: not a complete record ({error}); {rebuild}"
         ) from error
-    if _record_hash(record) != expected["record_sha256"]:
+    if _record_hash(record) != record["record_sha256"]:
         raise DamagedReferenceError(f"{about}: the record was altered; {rebuild}")
     content = numbers.read_bytes()
-    if len(content) < expected["bytes"]:
+    if len(content) < record["bytes"]:
         raise DamagedReferenceError(
-            f"{numbers}: truncated, {len(content)} of {expected['bytes']} bytes; {rebuild}"
+            f"{numbers}: truncated, {len(content)} of {record['bytes']} bytes; {rebuild}"
         )
-    if _sha256(content) != expected["sha256"]:
+    if _sha256(content) != record["sha256"]:
         raise DamagedReferenceError(
             f"{numbers}: altered, its SHA-256 is not the one in {about.name}; {rebuild}"
         )
     with np.load(io.BytesIO(content), allow_pickle=False) as archive:
         arrays = {key: archive[key] for key in archive.files}
+    if set(arrays) != set(record["estimated_error"]):
+        raise DamagedReferenceError(
+            f"{about}: not a complete record (estimated errors of"
+            f" {', '.join(record['estimated_error'])} for arrays {', '.join(arrays)}); {rebuild}"
+        )
     return Stored(name, arrays, record)
+
+
+def _require_complete(record: Any, name: str) -> None:
+    """Raise ValueError or KeyError unless a record says all that a record says."""
+    if not isinstance(record, dict):
+        raise ValueError("no JSON object")
+    for key, kind in _RECORD.items():
+        if not isinstance(record[key], kind):
+            raise ValueError(f"{key} is not what it should be")
+        if kind in (str, dict) and key != "arguments" and not record[key]:
+            raise ValueError(f"{key} is empty")
+    if record["name"] != name:
+        raise ValueError(f"the record is that of {record['name']}")
+    if (record["element_order"] is None) != (not record["meshes"]):
+        raise ValueError("meshes and element order belong together")
+    for mesh in record["meshes"]:
+        if not {"size", "points", "sha256"} < set(mesh):
+            raise ValueError("a mesh has no size, points or sha256")
+    if not all(isinstance(e, float | int) and e >= 0 for e in record["estimated_error"].values()):
+        raise ValueError("an estimated error is no number")
+
+
+def compare_with_catalogue(reference: Reference, stored: Stored) -> None:
+    """Check that the record is that of the catalogue's entry: generator, arguments, citation.
+
+    Raises
+    ------
+    DamagedReferenceError
+        If the entry was changed since the reference was built; says in what.
+    """
+    wanted = {
+        "title": reference.title,
+        "citation": reference.citation,
+        "generator": reference.generator_name,
+        "arguments": json.loads(json.dumps(reference.arguments)),
+    }
+    changed = [key for key, value in wanted.items() if stored.record[key] != value]
+    if changed:
+        raise DamagedReferenceError(
+            f"{reference.name}: stored with another {', '.join(changed)} than the catalogue has;"
+            f" run: python -m references build {reference.name}"
+        )
+
+
+def _same_meshes(made: Generated, stored: Stored) -> bool:
+    """Whether all meshes are among the recorded ones; without any on both sides nothing differs."""
+    known = {mesh["sha256"] for mesh in stored.record["meshes"]}
+    if bool(known) != bool(made.meshes):
+        raise DamagedReferenceError(
+            f"{stored.name}: {len(known)} meshes recorded, {len(made.meshes)} used when"
+            " regenerated: the record does not belong to this generator"
+        )
+    return all(mesh.sha256 in known for mesh in made.meshes)
 
 
 def regenerate_and_compare(reference: Reference, stored: Stored) -> float:
     """Run the generator again (its spot check) and compare.
 
-    Arrays must agree to rounding if the meshes are the same, bit for bit, else (another gmsh)
-    within three times the estimated error.
+    Arrays must agree to rounding if the meshes are the same, bit for bit, or there are none; else
+    (another gmsh) within three times the estimated error.
 
     Returns
     -------
@@ -213,8 +290,7 @@ def regenerate_and_compare(reference: Reference, stored: Stored) -> float:
     if reference.spot is None:
         raise ValueError(f"{reference.name} has no quick way to be regenerated")
     made = reference.generator(**{**reference.arguments, **reference.spot})
-    known = {mesh["sha256"] for mesh in stored.record["meshes"]}
-    same_meshes = all(mesh.sha256 in known for mesh in made.meshes)
+    same_meshes = _same_meshes(made, stored)
     rows: Any = slice(None)
     if reference.axis and reference.spot:
         axis = stored.arrays[reference.axis].tolist()

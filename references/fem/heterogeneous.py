@@ -17,6 +17,7 @@ from scipy.sparse import coo_matrix, csr_matrix, hstack
 
 from references.eigen import RIGID_MOTIONS, elastic_frequencies
 from references.fem.elasticity import component_dofs, strain
+from references.fem.mesh_record import MeshRecord
 from references.lattice.blocks import BlockLattice, TetrachiralCell
 from references.linear import factorise
 
@@ -59,6 +60,13 @@ def interface_grid(cell: TetrachiralCell, across: int) -> skfem.MeshQuad:
     ends = np.array(steps) * (cell.contact / 2) / (steps[-1] + here)
     y = np.concatenate([ends - cell.contact / 2, [0.0], cell.contact / 2 - ends[::-1]])
     return skfem.MeshQuad.init_tensor(x, y)
+
+
+def interface_record(cell: TetrachiralCell, across: int) -> MeshRecord:
+    """Provenance of the mesh of one interface (see :func:`interface_grid`)."""
+    grid = interface_grid(cell, across)
+    corners = grid.p[:, grid.t]
+    return MeshRecord.of_grid(grid.p.T, grid.t.T, float(np.ptp(corners, axis=1).max()))
 
 
 def _assemble(

@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from references.provenance import (
     Generated,
     Reference,
     build,
+    compare_with_catalogue,
     load,
     regenerate_and_compare,
 )
@@ -84,6 +86,86 @@ def test_altered_records_are_refused_by_name(folder: Path) -> None:
         load("squares", folder)
 
 
+REQUIRED = [
+    "name", "title", "citation", "generator", "arguments", "versions", "element_order", "meshes",
+    "estimated_error", "bytes", "sha256", "record_sha256",
+]  # fmt: skip
+
+
+def rewrite(folder: Path, **changes: object) -> None:
+    """Change a record and sign it again; None takes an entry out."""
+    about = folder / "squares.json"
+    record = {**json.loads(about.read_text()), **changes}
+    record = {k: v for k, v in record.items() if v is not None}
+    if "record_sha256" in record:
+        record["record_sha256"] = provenance._record_hash(record)
+    about.write_text(json.dumps(record))
+
+
+@pytest.mark.parametrize("key", REQUIRED)
+def test_incomplete_records_are_refused_though_their_hash_is_right(folder: Path, key: str) -> None:
+    rewrite(folder)
+    load("squares", folder)
+    rewrite(folder, **{key: None})
+    with pytest.raises(DamagedReferenceError, match=rf"not a complete record \('{key}'\)"):
+        load("squares", folder)
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"citation": ""}, "citation is empty"),
+        ({"meshes": []}, "meshes and element order"),
+        ({"meshes": [{"size": 0.5}]}, "a mesh has no"),
+        ({"meshes": "one"}, "meshes is not"),
+        ({"name": "cubes"}, "that of cubes"),
+        ({"estimated_error": {"n": 0.0}}, "estimated errors of n for arrays n, squares"),
+        ({"estimated_error": {"n": 0.0, "squares": "small"}}, "estimated error is no number"),
+    ],
+)
+def test_records_that_say_nothing_are_refused(folder: Path, change: dict, why: str) -> None:
+    rewrite(folder, **change)
+    with pytest.raises(DamagedReferenceError, match=f"not a complete record.*{why}"):
+        load("squares", folder)
+
+
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        ({"citation": "somebody (2020)"}, "citation"),
+        ({"title": "Cubes"}, "title"),
+        ({"arguments": {"numbers": [1, 2, 4]}}, "arguments"),
+        ({"generator": catalogue}, "generator"),
+    ],
+)
+def test_a_changed_entry_of_the_catalogue_is_seen(folder: Path, change: dict, what: str) -> None:
+    stored = load("squares", folder)
+    compare_with_catalogue(EXAMPLE, stored)
+    with pytest.raises(DamagedReferenceError, match=f"another {what} than the catalogue has"):
+        compare_with_catalogue(replace(EXAMPLE, **change), stored)
+
+
+def without_meshes(factor: float = 1.0) -> Generated:
+    return Generated({"n": factor * np.ones(2)}, {"n": 1e-2})
+
+
+def test_references_without_meshes_must_agree_to_rounding(tmp_path: Path) -> None:
+    """No mesh recorded is not "another mesh": the estimated error allows nothing."""
+    plain = Reference("plain", "Plain", "nobody (2020)", without_meshes, {})
+    stored = build(plain, tmp_path)
+    assert regenerate_and_compare(plain, stored) == 0.0
+    off = replace(plain, arguments={"factor": 1.001})
+    with pytest.raises(DamagedReferenceError, match="regenerates with a difference"):
+        regenerate_and_compare(off, stored)
+
+
+def test_meshes_on_one_side_only_are_refused(folder: Path, tmp_path: Path) -> None:
+    stored = load("squares", folder)
+    stored.record["meshes"].clear()
+    with pytest.raises(DamagedReferenceError, match="0 meshes recorded, 1 used"):
+        regenerate_and_compare(EXAMPLE, stored)
+
+
 def test_regenerating_a_part_finds_its_rows(folder: Path) -> None:
     assert regenerate_and_compare(EXAMPLE, load("squares", folder)) == 0.0
 
@@ -112,6 +194,10 @@ def test_another_mesh_may_differ_by_the_estimated_error(
 def test_a_generator_must_say_how_exact_it_is() -> None:
     with pytest.raises(ValueError, match="estimated error"):
         Generated({"a": np.ones(2)}, {})
+    with pytest.raises(ValueError, match="not negative"):
+        Generated({"a": np.ones(2)}, {"a": np.nan})
+    with pytest.raises(ValueError, match="both or none"):
+        Generated({"a": np.ones(2)}, {"a": 0.0}, order=2)
     with pytest.raises(ValueError, match="not finite"):
         Generated({"a": np.array([np.nan])}, {"a": 0.0})
 
@@ -119,8 +205,10 @@ def test_a_generator_must_say_how_exact_it_is() -> None:
 @pytest.mark.parametrize("name", list(catalogue()))
 def test_every_stored_reference_is_whole(name: str) -> None:
     reference, stored = catalogue()[name], load(name)
-    assert stored.record["arguments"] == json.loads(json.dumps(reference.arguments))
-    assert stored.record["citation"] == reference.citation
+    compare_with_catalogue(reference, stored)
+    # all of them contain finite-element numbers
+    assert stored.record["meshes"]
+    assert stored.record["element_order"] == 2
     assert max(stored.record["estimated_error"].values()) < 2e-3
 
 
@@ -153,6 +241,12 @@ def test_command_line(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
     assert "truncated" in broken.output
     assert runner.invoke(app, ["build", "squares"]).exit_code == 0
     assert runner.invoke(app, ["check"]).exit_code == 0
+    changed = {"squares": replace(EXAMPLE, citation="somebody else")}
+    with monkeypatch.context() as patch:
+        patch.setattr("references.__main__.catalogue", lambda: changed)
+        other = runner.invoke(app, ["check"])
+        assert other.exit_code == 1
+        assert "another citation" in " ".join(other.output.split())
     (folder / "stray.npz").write_bytes(b"")
     assert runner.invoke(app, ["check"]).exit_code == 1
     assert runner.invoke(app, ["check", "nothing"]).exit_code == 2
