@@ -52,7 +52,7 @@ class _Guarded(LinearOperator):
             raise NegativeCurvatureError(
                 f"the body has a direction of non-positive energy (x·Kx = {energy:.3g}): a "
                 f"cut family, or damage, has taken more stiffness than the bulk can spare. Use "
-                f"calibration='positive', another m, or hold the loose part"
+                f"calibration='positive' (for C66 ≥ C12), another m, or hold the loose part"
             )
         return y
 

@@ -107,7 +107,7 @@ def find(
         Whether single bonds are broken: only then are hinges looked for (cracks, too, may leave
         slack particles).
     positive : bool
-        Whether the operator is (taken to be) positive.
+        Whether the operator is (taken to be) positive; otherwise its companion is searched.
     """
     loose = unheld(bonds, prescribed, elastic)
     if loose:
@@ -125,8 +125,8 @@ def find(
             f"{len(slack)} particle(s), the first at ({x:.4g}, {y:.4g}), have too few bonds left "
             f"to be held by them"
         )
-    if damaged and positive and len(operator.active):
-        hinged = zero_energy_particles(operator)
+    if damaged and len(operator.active):
+        hinged = zero_energy_particles(operator if positive else operator.companion())
         if len(hinged):
             x, y = points[hinged].mean(axis=0)
             return hinged, (

@@ -178,7 +178,7 @@ def acoustic_tensor(voigt: Array, direction: Array) -> Array:
     return np.einsum("...ai,ab,...bj->...ij", rows, voigt, rows)
 
 
-def brillouin_zone(count: int = 48) -> Array:
+def brillouin_zone(count: int = 32) -> Array:
     """Half of the zone (the symbol of −k is the conjugate) on a grid without k = 0."""
     edge = np.pi * (np.arange(count) + 1) / count
     k1, k2 = np.meshgrid(np.concatenate([-edge[::-1], [0.0], edge]), np.r_[0.0, edge])
@@ -186,7 +186,7 @@ def brillouin_zone(count: int = 48) -> Array:
     return k[np.linalg.norm(k, axis=1) > 0]
 
 
-def assess(family: Family, moduli: Moduli, count: int = 48) -> Stability:
+def assess(family: Family, moduli: Moduli, count: int = 32) -> Stability:
     """Sign and margin of a bond model in bulk.
 
     Parameters

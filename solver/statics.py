@@ -26,7 +26,6 @@ from threadpoolctl import threadpool_limits
 
 from .errors import ConvergenceError
 from .krylov import Task, condensed_gradients, conjugate_gradients
-from .micromoduli import ElasticModuli
 from .operators import BondOperator
 from .preconditioner import BlockJacobi, TwoLevel
 from .scene import Discretisation
@@ -37,18 +36,6 @@ Preconditioner = Literal["auto", "two-level", "block-jacobi"]
 
 # Below this many unknowns block Jacobi needs less time than the set-up of two levels.
 _TWO_LEVEL = 2_000
-
-
-def companion(operator: BondOperator) -> BondOperator:
-    """The same body with every negative modulus turned positive.
-
-    Its condensed symbol is equivalent to that of the indefinite one, wave by wave, so that
-    iterations do not grow as the lattice is refined.
-    """
-    moduli = operator.moduli
-    assert isinstance(moduli, ElasticModuli)
-    positive = ElasticModuli(np.abs(moduli.normal), np.abs(moduli.shear))
-    return operator.with_moduli(positive)
 
 
 def preconditioner(
@@ -67,7 +54,7 @@ def preconditioner(
         )
     small = operator.shape[0] < _TWO_LEVEL
     jacobi = choice == "block-jacobi" or (choice == "auto" and small)
-    positive = companion(operator) if sign == "indefinite" else operator
+    positive = operator.companion() if sign == "indefinite" else operator
     if jacobi:
         return BlockJacobi(positive)
     earlier = None if previous is None else previous.preconditioner

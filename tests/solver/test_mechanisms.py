@@ -94,6 +94,14 @@ def test_each_kind_is_found_refused_and_set_aside(
     assert np.allclose(solution.displacement[rest], cut_out.displacement[rest], atol=1e-11)
 
 
+def test_a_hinge_is_found_where_the_operator_is_indefinite() -> None:
+    scene = _scene(_around(_block, 1), material=ElasticTensor.isotropic(1.0, 0.45))
+    with pytest.raises(MechanismError, match="a hinge"):
+        scene.discretise()
+    solution = dataclasses.replace(scene, loose="drop").solve(1e-10)
+    assert np.isnan(solution.displacement).any(axis=1).sum() == 16
+
+
 def test_two_bonds_at_different_places_hold_a_block() -> None:
     def two(lattice: Lattice, family: Family) -> np.ndarray:
         mask = _around(_block, 0)(lattice, family)
