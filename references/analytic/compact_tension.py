@@ -48,16 +48,18 @@ def stress_intensity(load: float, thickness: float, width: float, crack: ArrayLi
     Raises
     ------
     ValueError
-        If a dimension is not positive or a/W is outside [0.2, 1).
+        If the load is not finite, a dimension not positive and finite or a/W outside [0.2, 1).
     """
-    if not (thickness > 0.0 and width > 0.0):
-        raise ValueError("the specimen's thickness and width must be positive")
+    if not np.isfinite(load):
+        raise ValueError("the load is not finite")
+    if not (0.0 < thickness < np.inf and 0.0 < width < np.inf):
+        raise ValueError("the specimen's thickness and width must be positive and finite")
     factor = shape_factor(np.asarray(crack, dtype=float) / width)
     return np.asarray(load / (thickness * np.sqrt(width)) * factor)
 
 
 def critical_load(toughness: float, thickness: float, width: float, crack: ArrayLike) -> Floats:
     """Load P (N) at which K reaches `toughness` (Pa m^(1/2))."""
-    if not toughness > 0.0:
-        raise ValueError("a fracture toughness is positive")
+    if not 0.0 < toughness < np.inf:
+        raise ValueError("a fracture toughness is positive and finite")
     return toughness / stress_intensity(1.0, thickness, width, crack)

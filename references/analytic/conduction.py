@@ -138,6 +138,11 @@ class Exponential(SteadyField):
     b: complex
     amplitude: complex = 1.0
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not np.all(np.isfinite([self.a, self.b, self.amplitude])):
+            raise ValueError("an exponential field has finite rates and a finite amplitude")
+
     def _wave(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.complex128]:
         xs, ys = checked_points(x, y)
         return self.amplitude * np.exp(self.a * xs + self.b * ys)
@@ -165,6 +170,11 @@ class PointSource(SteadyField):
 
     power: float = 1.0
     position: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not np.all(np.isfinite([self.power, *self.position])):
+            raise ValueError("a point source has a finite power and position")
 
     def _offset(self, x: ArrayLike, y: ArrayLike) -> tuple[Floats, Floats]:
         xs, ys = checked_points(x, y)
@@ -220,8 +230,10 @@ class InstantaneousSource:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "conductivity", checked_conductivity(self.conductivity))
-        if not self.capacity > 0.0:
-            raise ValueError("the heat capacity per volume must be positive")
+        if not 0.0 < self.capacity < np.inf:
+            raise ValueError("the heat capacity per volume must be positive and finite")
+        if not np.all(np.isfinite([self.heat, *self.position])):
+            raise ValueError("an instantaneous source has a finite heat and position")
 
     def _state(self, x: ArrayLike, y: ArrayLike, t: float) -> tuple[Floats, Floats, Floats]:
         if not (np.isfinite(t) and t > 0.0):

@@ -144,10 +144,13 @@ def combine(
     Raises
     ------
     ValueError
-        If there is no field, the numbers differ, or the fields belong to different tensors.
+        If there is no field, the numbers differ, a weight is not finite, or the fields belong to
+        different tensors.
     """
     if not fields or len(fields) != len(weights):
         raise ValueError("one weight for each of at least one field is needed")
+    if not np.all(np.isfinite(weights)):
+        raise ValueError("a weight is not finite")
     voigt = fields[0].voigt
     if any(not np.array_equal(f.voigt, voigt) for f in fields):
         raise ValueError("fields of different tensors do not add up to an equilibrium field")

@@ -28,8 +28,17 @@ def eccentric_angle(angle: ArrayLike, radius_ratio: float = 1.0) -> Floats:
         Polar angle, radians.
     radius_ratio : float
         b/a, the semi-axis along axis 2 over the one along axis 1.
+
+    Raises
+    ------
+    ValueError
+        If an angle is not finite or the ratio not positive and finite.
     """
     w = np.asarray(angle, dtype=float)
+    if not np.all(np.isfinite(w)):
+        raise ValueError("an angle is NaN or infinite")
+    if not 0.0 < radius_ratio < np.inf:
+        raise ValueError("the ratio of the hole's semi-axes must be positive and finite")
     return np.arctan2(np.sin(w), radius_ratio * np.cos(w))
 
 

@@ -178,6 +178,8 @@ class _TipBasis:
 
     def field(self, h: RootPair, KI: float, KII: float) -> Floats:
         """Re[KI (mu1 h2 - mu2 h1) - KII (h1 - h2)] / (mu1 - mu2), the form of every field."""
+        if not np.all(np.isfinite([KI, KII])):
+            raise ValueError("a stress intensity factor is not finite")
         return np.real(KI * (h.second - self.mu.second * h.difference) - KII * h.difference)
 
 
@@ -202,6 +204,12 @@ def crack_tip_displacement(
     -------
     ndarray, (..., 2)
         u1, u2 in m.
+
+    Raises
+    ------
+    ValueError
+        If the tensor is not positive definite, or a coordinate or stress intensity factor is not
+        finite.
     """
     basis = _TipBasis(voigt, x, y, face)
     parts = [basis.field(f.times(basis.root), KI, KII) for f in (basis.p, basis.q)]

@@ -24,16 +24,31 @@ from references.analytic.voigt import Floats, checked_points
 def _height_factor(kx: float, ky: float) -> float:
     if not (np.isfinite(kx) and np.isfinite(ky) and kx > 0.0 and ky > 0.0):
         raise ValueError("the conductivities kx and ky must be positive and finite")
-    return float(np.sqrt(kx / ky))
+    factor = float(np.sqrt(kx) / np.sqrt(ky))
+    if not 0.0 < factor < np.inf:
+        raise ValueError("the ratio of the conductivities is beyond floating point")
+    return factor
+
+
+# beyond this height arccosh(cosh v / cos c) = v - log cos c, to rounding: exp(-2 v) is below it
+_TALL = 20.0
+
+
+def _log_cosh(v: Floats) -> Floats:
+    """log cosh v for v >= 0, however large."""
+    return np.asarray(v + np.log1p(np.exp(-2 * v)) - np.log(2.0))
 
 
 def _arccosh_ratio(height: Floats, crack: Floats) -> Floats:
-    """arccosh(cosh(height) / cos(crack)), also where both are small.
+    """arccosh(cosh(height) / cos(crack)), where both are small and where the height is large.
 
-    cosh(v) - 1 = [sinh^2(height/2) + sin^2(crack/2)] 2 / cos(crack) is free of cancellation.
+    cosh(v) - 1 = [sinh^2(height/2) + sin^2(crack/2)] 2 / cos(crack) is free of cancellation; it
+    would overflow at heights above 1400, where arccosh(w) = log(2 w).
     """
-    excess = 2 * (np.sinh(height / 2) ** 2 + np.sin(crack / 2) ** 2) / np.cos(crack)
-    return 2 * np.arcsinh(np.sqrt(excess / 2))
+    low = np.minimum(height, _TALL)
+    excess = 2 * (np.sinh(low / 2) ** 2 + np.sin(crack / 2) ** 2) / np.cos(crack)
+    tall = _log_cosh(height) + np.log(2.0) - np.log(np.cos(crack))
+    return np.where(height > _TALL, tall, 2 * np.arcsinh(np.sqrt(excess / 2)))
 
 
 def johnson(
@@ -88,8 +103,8 @@ def crack_ratio_of(
         raise ValueError("a potential ratio V(a)/V(0) is at least one")
     if not np.all(np.isfinite(probe) & (probe > 0.0)):
         raise ValueError("the probe ratio y/W must be positive")
-    height = np.pi / 2 * probe * factor
-    cosine = np.cosh(height) / np.cosh(ratio * height)
+    height = np.asarray(np.pi / 2 * probe * factor)
+    cosine = np.exp(_log_cosh(height) - _log_cosh(ratio * height))
     return 2 / np.pi * np.arccos(np.clip(cosine, -1.0, 1.0))
 
 
@@ -119,12 +134,14 @@ def strip_potential(
         If a point lies outside the half strip or the crack does not end inside the strip.
     """
     factor = _height_factor(kx, ky)
-    if not (width > 0.0 and 0.0 <= crack < width):
+    if not (np.isfinite(width) and width > 0.0 and 0.0 <= crack < width):
         raise ValueError("the crack must end inside the strip: 0 <= a < W")
     xs, ys = checked_points(x, y)
     if np.any((xs < 0.0) | (xs > width) | (ys < 0.0)):
         raise ValueError("a point lies outside the half strip 0 <= x <= W, y >= 0")
     u, v = np.pi * xs / (2 * width), np.pi * ys * factor / (2 * width)
-    t = np.cosh(v) * np.cos(u) - 1j * np.sinh(v) * np.sin(u)
-    potential = np.real(np.arccosh(t / np.cos(np.pi * crack / (2 * width))))
+    low, cosine = np.minimum(v, _TALL), np.cos(np.pi * crack / (2 * width))
+    t = np.cosh(low) * np.cos(u) - 1j * np.sinh(low) * np.sin(u)
+    # far above the crack the field is uniform again, V = v - log cos c
+    potential = np.where(v > _TALL, v - np.log(cosine), np.real(np.arccosh(t / cosine)))
     return potential * 2 * width / (np.pi * factor)

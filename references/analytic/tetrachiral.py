@@ -80,8 +80,11 @@ def interface_stiffness(
     Kn, Kt : float
         Pa.
     """
-    if not (young > 0.0 and -1.0 < poisson <= 0.5 and length > 0.0 and thickness > 0.0):
-        raise ValueError("an interface needs E > 0, -1 < nu <= 1/2 and positive dimensions")
+    sizes = np.array([young, length, thickness], dtype=float)
+    if not (np.all((sizes > 0.0) & (sizes < np.inf)) and -1.0 < poisson <= 0.5):
+        raise ValueError(
+            "an interface needs E > 0, -1 < nu <= 1/2 and positive dimensions, all of them finite"
+        )
     slenderness = length / thickness
     normal = slenderness * young / (1 - poisson**2)
     return normal, slenderness * young / (2 * (1 + poisson))
@@ -95,8 +98,8 @@ def cell_geometry(side: float, beta: float) -> tuple[float, float, float]:
     ValueError
         If the side is not positive or the angle is outside [0, pi/4).
     """
-    if not side > 0.0:
-        raise ValueError("the side of a block must be positive")
+    if not 0.0 < side < np.inf:
+        raise ValueError("the side of a block must be positive and finite")
     angle = _checked_angle(beta)
     return (
         float(side / np.cos(angle)),

@@ -65,6 +65,8 @@ def turned_axes(voigt: ArrayLike, angle: float) -> Floats:
     -------
     ndarray, (3, 3)
     """
+    if not np.isfinite(angle):
+        raise ValueError("the angle of the axes is not finite")
     c, s = np.cos(angle), np.sin(angle)
     turn = np.array(
         [[c * c, s * s, 2 * c * s], [s * s, c * c, -2 * c * s], [-c * s, c * s, c * c - s * s]]
@@ -104,8 +106,8 @@ def isotropic_voigt(young: float, poisson: float, plane: str = "stress") -> Floa
     """
     if plane not in ("stress", "strain"):
         raise ValueError(f"plane must be 'stress' or 'strain', not {plane!r}")
-    if not (young > 0.0 and -1.0 < poisson < 0.5):
-        raise ValueError("an isotropic solid needs E > 0 and -1 < nu < 1/2")
+    if not (np.isfinite(young) and young > 0.0 and -1.0 < poisson < 0.5):
+        raise ValueError("an isotropic solid needs a finite E > 0 and -1 < nu < 1/2")
     shear = young / (2 * (1 + poisson))
     axial = young / (1 - poisson**2)
     if plane == "strain":

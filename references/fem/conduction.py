@@ -9,6 +9,7 @@ import skfem
 from numpy.typing import ArrayLike, NDArray
 from skfem.helpers import dot, grad
 
+from references.analytic.conduction import checked_conductivity
 from references.fem.evaluation import (
     ELEMENTS,
     Field,
@@ -22,18 +23,6 @@ from references.fem.restraint import require_temperature
 from references.linear import solve_with_prescribed
 
 Scalar = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike] | float
-
-
-def check_conductivity(conductivity: ArrayLike) -> NDArray[np.float64]:
-    """A symmetric positive-definite 2×2 conductivity, or ValueError."""
-    tensor = np.asarray(conductivity, dtype=float)
-    if tensor.shape != (2, 2) or not np.isfinite(tensor).all():
-        raise ValueError("the conductivity must be a 2×2 array of finite numbers")
-    if not np.allclose(tensor, tensor.T, rtol=1e-12, atol=0):
-        raise ValueError("the conductivity must be symmetric")
-    if np.linalg.eigvalsh(tensor)[0] <= 0:
-        raise ValueError("the conductivity must be positive definite: heat flows downhill")
-    return tensor
 
 
 def evaluate(function: Scalar, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray:
@@ -103,7 +92,7 @@ def steady_conduction(
     True
     """
     check_order(order)
-    tensor = check_conductivity(conductivity)
+    tensor = checked_conductivity(conductivity)
     check_mesh(mesh)
     if isinstance(boundary_temperature, Mapping):
         prescribed: dict[str, Scalar] = dict(boundary_temperature)

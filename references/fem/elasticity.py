@@ -9,6 +9,7 @@ import skfem
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_matrix
 
+from references.analytic.voigt import checked_voigt
 from references.fem.evaluation import (
     ELEMENTS,
     Field,
@@ -22,18 +23,6 @@ from references.fem.restraint import require_held, rigid_motions
 from references.linear import solve_with_prescribed
 
 Vector = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike] | ArrayLike
-
-
-def check_voigt(voigt: ArrayLike) -> NDArray[np.float64]:
-    """A symmetric positive-definite 3×3 stiffness (order 11, 22, 12), or ValueError."""
-    tensor = np.asarray(voigt, dtype=float)
-    if tensor.shape != (3, 3) or not np.isfinite(tensor).all():
-        raise ValueError("the stiffness must be a 3×3 array of finite numbers (11, 22, 12)")
-    if not np.allclose(tensor, tensor.T, rtol=1e-12, atol=1e-12 * np.abs(tensor).max()):
-        raise ValueError("the stiffness must be symmetric")
-    if np.linalg.eigvalsh(tensor)[0] <= 0:
-        raise ValueError("the stiffness must be positive definite: every strain costs energy")
-    return tensor
 
 
 def strain(u):  # type: ignore[no-untyped-def]
@@ -145,7 +134,7 @@ def solve_elasticity(
     """
     check_order(order)
     check_mesh(mesh)
-    stiffness_tensor = check_voigt(voigt)
+    stiffness_tensor = checked_voigt(voigt)
     if displacement is None:
         prescribed: dict[str, Vector] = {}
     elif isinstance(displacement, Mapping):

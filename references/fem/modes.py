@@ -6,8 +6,9 @@ import numpy as np
 import skfem
 from numpy.typing import ArrayLike, NDArray
 
+from references.analytic.voigt import checked_voigt
 from references.eigen import elastic_part, smallest_eigenpairs
-from references.fem.elasticity import check_voigt, component_dofs, elastic_forms
+from references.fem.elasticity import component_dofs, elastic_forms
 from references.fem.evaluation import check_order
 from references.fem.mesh import Mesh, rectangle
 from references.fem.restraint import rigid_motions
@@ -67,7 +68,7 @@ def in_plane_modes(
         strain though it is clamped, or beside the rest.
     """
     check_order(order)
-    tensor = check_voigt(voigt)
+    tensor = checked_voigt(voigt)
     if not np.isfinite(density) or density <= 0:
         raise ValueError(f"the density must be positive, not {density}")
     if count < 1:

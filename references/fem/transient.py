@@ -9,7 +9,7 @@ import skfem
 from numpy.typing import ArrayLike, NDArray
 from skfem.helpers import dot, grad
 
-from references.fem.conduction import check_conductivity
+from references.analytic.conduction import checked_conductivity
 from references.fem.evaluation import (
     ELEMENTS,
     Field,
@@ -99,7 +99,7 @@ def transient_conduction(
         For bad material data, or times and steps that make no sense.
     """
     check_order(order)
-    tensor = check_conductivity(conductivity)
+    tensor = checked_conductivity(conductivity)
     if not np.isfinite(capacity) or capacity <= 0:
         raise ValueError(f"the heat capacity must be positive, not {capacity}")
     if not duration > 0 or steps < 1 or outputs < 1 or steps % outputs:

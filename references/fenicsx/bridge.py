@@ -15,9 +15,11 @@ import numpy as np
 import skfem
 from numpy.typing import ArrayLike, NDArray
 
+from references.analytic.conduction import checked_conductivity
+from references.analytic.voigt import checked_voigt
 from references.eigen import elastic_part
-from references.fem.conduction import Scalar, check_conductivity, evaluate
-from references.fem.elasticity import Vector, check_voigt, evaluate_vector
+from references.fem.conduction import Scalar, evaluate
+from references.fem.elasticity import Vector, evaluate_vector
 from references.fem.evaluation import ELEMENTS, check_order, dirichlet_points, to_skfem
 from references.fem.mesh import Mesh
 from references.fem.restraint import require_held, require_temperature, rigid_motions
@@ -227,7 +229,7 @@ def steady_conduction(
     problem = {
         **numbering.problem,
         "physics": "conduction",
-        "tensor": check_conductivity(conductivity),
+        "tensor": checked_conductivity(conductivity),
         "prescribed": prescribed,
         "source": evaluate(source, x, y),
     }
@@ -264,7 +266,7 @@ def solve_elasticity(
     problem = {
         **numbering.problem,
         "physics": "elasticity",
-        "tensor": check_voigt(voigt),
+        "tensor": checked_voigt(voigt),
         "prescribed": prescribed,
         "tractions": len(tractions or {}),
     }
@@ -292,7 +294,7 @@ def in_plane_frequencies(
     for name in clamped:
         mesh.nodes(name)
         prescribed[numbering.on[name]] = 0.0
-    tensor = check_voigt(voigt)
+    tensor = checked_voigt(voigt)
     rigid = rigid_motions(numbering.nodes, numbering.element_nodes, ~np.isnan(prescribed))
     extent = np.ptp(mesh.points, axis=0).max()
     problem = {

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_matrix, csr_matrix, diags
 
+from references.analytic.tetrachiral import cell_geometry, interface_stiffness
 from references.eigen import RIGID_MOTIONS, elastic_frequencies
 
 
@@ -54,25 +55,23 @@ class TetrachiralCell:
     @property
     def pitch(self) -> float:
         """ℓ = a / cos β, distance of neighbouring centroids."""
-        return float(self.side / np.cos(self.angle))
+        return cell_geometry(self.side, self.angle)[0]
 
     @property
     def contact(self) -> float:
         """b = (1 − tan β) a, length of an interface."""
-        return float((1 - np.tan(self.angle)) * self.side)
+        return cell_geometry(self.side, self.angle)[1]
 
     @property
     def springs(self) -> tuple[float, float, float]:
         """K_n, K_t (N/m per unit depth, Eq. 86) and rotational K_n b²/12 (N m per unit depth)."""
-        slender = self.contact / self.thickness
-        normal = slender * self.young / (1 - self.poisson**2)
-        shear = slender * self.young / (2 * (1 + self.poisson))
+        normal, shear = interface_stiffness(self.young, self.poisson, self.contact, self.thickness)
         return float(normal), float(shear), float(normal * self.contact**2 / 12)
 
     @property
     def effective_density(self) -> float:
         """ρ cos²β: the cell has pores."""
-        return float(self.density * np.cos(self.angle) ** 2)
+        return self.density * cell_geometry(self.side, self.angle)[2]
 
 
 def paper_cell() -> TetrachiralCell:

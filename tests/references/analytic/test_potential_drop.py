@@ -82,6 +82,26 @@ def test_one_per_cent_of_crack_is_seen():
     assert drop.johnson(0.505, 0.2) / drop.johnson(0.5, 0.2) - 1 > 1e-3
 
 
+def test_tall_probes_do_not_overflow():
+    # V(a)/V(0) = 1 - log cos(pi a / 2 W) / v for v = pi/2 y/W sqrt(kx/ky) >> 1
+    for kx in (1e3, 1e6, 1e12):
+        height = np.pi / 2 * np.sqrt(kx)
+        expected = 1 - np.log(np.cos(np.pi / 4)) / height
+        assert drop.johnson(0.5, 1.0, kx=kx) == pytest.approx(expected, rel=1e-15)
+    assert drop.crack_ratio_of(drop.johnson(0.5, 1.0, kx=1e6), 1.0, kx=1e6) == pytest.approx(
+        0.5, rel=1e-9
+    )
+    far = drop.strip_potential(0.3, 2000.0, 0.5, 1.0)
+    assert far == pytest.approx(2000.0 - np.log(np.cos(np.pi / 4)) * 2 / np.pi, rel=1e-15)
+
+
+def test_the_two_branches_meet():
+    """At the height where the logarithm takes over, both forms give the same to rounding."""
+    at = drop._TALL * 2 / np.pi
+    low, high = (drop.johnson(0.7, at * f) * at * f for f in (1 - 1e-12, 1 + 1e-12))
+    assert high - low == pytest.approx(2e-12 * at, abs=1e-13)
+
+
 def test_bad_input_is_refused():
     with pytest.raises(ValueError, match="crack ratio"):
         drop.johnson(1.0, 0.2)
