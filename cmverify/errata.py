@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 
@@ -27,20 +28,15 @@ def print_errata(console: Console, wrong_only: bool = True) -> bool:
                 proof = "[green]✓[/]"
             except AssertionError as error:
                 failures.append(f"Eq. {entry.number}: {error}")
-                proof = f"[red]✗ {error}[/]"
+                proof = f"[red]✗ {escape(str(error))}[/]"
             wrong += entry.verdict == "wrong"
             confirmed += entry.verdict == "confirmed"
             if entry.verdict == "wrong" or not wrong_only or "✗" in proof:
                 texts = (entry.number, entry.printed, entry.derived, entry.shows)
-                view.add_row(*(_plain(text) for text in texts), proof)
+                view.add_row(*(escape(text) for text in texts), proof)
     console.print(view)
     console.print(
         f"{wrong} printed equations do not hold, {confirmed} are confirmed; "
         f"{wrong + confirmed - len(failures)} of {wrong + confirmed} proofs hold."
     )
     return not failures
-
-
-def _plain(text: str) -> str:
-    """Square brackets of formulas are no markup."""
-    return text.replace("[", "\\[")

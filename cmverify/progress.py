@@ -5,6 +5,7 @@ from __future__ import annotations
 from types import TracebackType
 
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
@@ -63,7 +64,7 @@ class LiveProgress:
             self._bars.remove_task(self._running.pop(event.task))
         self._bars.advance(self._whole)
         if event.kind == "failed":
-            self._console.print(f"[red]failed  [/] {label}  [red]{event.message}[/]")
+            self._console.print(f"[red]failed  [/] {label}  [red]{escape(str(event.message))}[/]")
         elif event.kind == "reused":
             self._console.print(f"[dim]reused   {label}[/]")
         else:

@@ -56,6 +56,12 @@ class CaseResult:
         """Whether there are verdicts and all of them hold."""
         return bool(self.verdicts) and all(v.passed for v in self.verdicts)
 
+    @property
+    def tightest(self) -> Verdict | None:
+        """The absolute bound that is nearest to failing, or the worst that fails."""
+        bounds = [v for v in self.verdicts if v.kind == "bound" and not math.isnan(v.margin)]
+        return max(bounds, key=lambda v: v.margin, default=None)
+
     def finest(self, method: str) -> tuple[int, Measurement] | None:
         """The finest measurement of a method that has one."""
         series = self.outcomes.get(method, {})

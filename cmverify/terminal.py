@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from cmverify import precision
@@ -28,26 +29,33 @@ def cases_table(cases: Sequence[Case]) -> Table:
 
 
 def print_verdicts(console: Console, summary: Sequence[CaseResult]) -> None:
-    """The verdict table, failures marked, and the sum of it all."""
+    """One line a case with its tightest bound, every failure, and the sum of it all."""
     view = Table(box=None, header_style="bold", pad_edge=False)
-    for column in ("", "case", "method", "quantity", "at"):
-        view.add_column(column)
-    view.add_column("measured", justify="right")
-    view.add_column("must hold")
-    verdicts = [v for result in summary for v in result.verdicts]
-    for v in verdicts:
-        if v.kind == "ran" and v.passed:
-            continue
-        mark = "[green]✓[/]" if v.passed else "[red]✗ FAIL[/]"
-        view.add_row(mark, v.case, v.method, v.quantity, v.where, f"{v.value:.3g}", v.asked)
-        if v.message:
-            view.add_row("", "", f"[red]{v.message}[/]")
+    for column in ("", "case", "checks", "tightest bound", "measured", "must hold"):
+        view.add_column(column, justify="right" if column in ("checks", "measured") else "left")
+    for result in summary:
+        good = sum(v.passed for v in result.verdicts)
+        row = ["", "", ""]
+        if near := result.tightest:
+            row = [f"{near.quantity}, {near.method}, {near.where}", f"{near.value:.3g}", near.asked]
+        mark = "[green]✓[/]" if result.passed else "[red]✗[/]"
+        view.add_row(mark, result.case.name, f"{good}/{len(result.verdicts)}", *row)
     console.print(view)
-    failed = sum(not v.passed for v in verdicts)
+    verdicts = [v for result in summary for v in result.verdicts]
+    failed = [v for v in verdicts if not v.passed]
+    for v in failed:
+        console.print(
+            "[red]✗ FAIL[/] "
+            + escape(
+                f"{v.case}: {v.method}, {v.quantity}, {v.where}: "
+                f"{v.value:.4g}, must hold {v.asked}. {v.message}"
+            ),
+            highlight=False,
+        )
     if all_passed(summary):
         console.print(f"[bold green]All {len(verdicts)} checks hold.[/]")
     else:
-        console.print(f"[bold red]{failed} of {len(verdicts)} checks fail.[/]")
+        console.print(f"[bold red]{len(failed)} of {len(verdicts)} checks fail.[/]")
 
 
 def order_lines(summary: Sequence[CaseResult]) -> list[str]:

@@ -17,7 +17,6 @@ from cmverify import precision
 from cmverify.case import Case, Measurement, nothing_to_compile
 from cmverify.results import write_text
 from cmverify.summary import CaseResult, Row, RunInfo, all_passed, table
-from cmverify.verdict import Verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -65,12 +64,6 @@ def build(summary: Sequence[CaseResult], info: RunInfo, folder: Path) -> Path:
     path = folder / "index.html"
     write_text(path, page)
     return path
-
-
-def _tightest(verdicts: Sequence[Verdict]) -> Verdict | None:
-    """The absolute bound that is nearest to failing, or the first that fails."""
-    bounds = [v for v in verdicts if v.kind == "bound" and not math.isnan(v.margin)]
-    return max(bounds, key=lambda v: v.margin, default=None)
 
 
 def _sections(summary: Sequence[CaseResult], folder: Path, jobs: int) -> list[dict[str, Any]]:
@@ -123,7 +116,7 @@ def _section(result: CaseResult, pictures: list[Picture], downloads: list[str]) 
         "checks": sorted(
             (v for v in result.verdicts if v.kind != "ran" or not v.passed), key=lambda v: v.passed
         ),
-        "tightest": _tightest(result.verdicts),
+        "tightest": result.tightest,
         "command": level_command,
         "solvers": _solvers(rows),
         "ordered": any(row.orders for row in rows),

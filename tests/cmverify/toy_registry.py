@@ -41,7 +41,7 @@ def trapezium(n: int, scale: float = 1.0) -> Measurement:
 
 
 def raises(n: int) -> Measurement:
-    raise ArithmeticError(f"no luck at {n}")
+    raise ArithmeticError(f"no luck at {n} [/brackets]")
 
 
 def dies(n: int) -> Measurement:
