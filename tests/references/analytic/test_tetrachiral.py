@@ -28,18 +28,12 @@ def cell_stiffness(Kn, Kt, beta):
     return full[:3, :3] - np.outer(full[:3, 3], full[3, :3]) / full[3, 3]
 
 
-@quick
-@given(stiffness, stiffness, angles)
-def test_condensed_cell(Kn, Kt, beta):
-    got = tetrachiral.effective_voigt(Kn, Kt, beta)
+def check_condensed_cell(got, Kn, Kt, beta):
     assert np.abs(got - cell_stiffness(Kn, Kt, beta)).max() <= 1e-12 * (Kn + Kt)
     assert np.linalg.eigvalsh(got)[0] > 0
 
 
-@quick
-@given(stiffness, stiffness, angles)
-def test_equations_87_to_90_with_the_corrected_denominator(Kn, Kt, beta):
-    got = tetrachiral.effective_voigt(Kn, Kt, beta)
+def check_equations(got, Kn, Kt, beta):
     c, s = np.cos(beta), np.sin(beta)
     top = (Kn - Kt) ** 2 * np.cos(4 * beta) - (Kn**2 + 14 * Kn * Kt + Kt**2)
     bottom = 8 * ((Kn - Kt) * np.cos(2 * beta) - (Kn + Kt))
@@ -50,6 +44,18 @@ def test_equations_87_to_90_with_the_corrected_denominator(Kn, Kt, beta):
     assert got[2, 2] == pytest.approx(0.5 * (Kn * s**2 + Kt * c**2), rel=1e-13)
     assert got[0, 2] == pytest.approx(0.25 * (Kn - Kt) * np.sin(2 * beta), abs=1e-13 * (Kn + Kt))
     assert got[0, 2] == -got[1, 2]
+
+
+@quick
+@given(stiffness, stiffness, angles)
+def test_condensed_cell(Kn, Kt, beta):
+    check_condensed_cell(tetrachiral.effective_voigt(Kn, Kt, beta), Kn, Kt, beta)
+
+
+@quick
+@given(stiffness, stiffness, angles)
+def test_equations_87_to_90_with_the_corrected_denominator(Kn, Kt, beta):
+    check_equations(tetrachiral.effective_voigt(Kn, Kt, beta), Kn, Kt, beta)
 
 
 def test_straight_lattice():
@@ -72,9 +78,23 @@ def test_paper_geometry():
     assert pytest.approx((250 * 10e6 / 0.75, 250 * 10e6 / 3), rel=1e-12) == (Kn, Kt)
 
 
-def test_one_per_cent_in_a_stiffness_is_seen():
-    right = tetrachiral.effective_voigt(4.0, 1.0, 0.4)
-    assert np.abs(tetrachiral.effective_voigt(4.04, 1.0, 0.4) - right).max() > 1e-3
+@pytest.mark.parametrize("check", [check_condensed_cell, check_equations])
+@pytest.mark.parametrize("off", [(1.01, 1, 1), (1, 1.01, 1), (1, 1, 1.01)])
+def test_one_per_cent_is_seen(check, off):
+    right = (4.0, 1.0, 0.4)
+    check(tetrachiral.effective_voigt(*right), *right)
+    perturbed = np.multiply(right, off).tolist()
+    with pytest.raises(AssertionError):
+        check(tetrachiral.effective_voigt(*perturbed), *right)
+
+
+@pytest.mark.parametrize("entry", [(0, 0), (0, 1), (0, 2), (2, 2)])
+@pytest.mark.parametrize("check", [check_condensed_cell, check_equations])
+def test_one_per_cent_in_an_entry_is_seen(check, entry):
+    tensor = tetrachiral.effective_voigt(4.0, 1.0, 0.4)
+    tensor[entry] *= 1.01
+    with pytest.raises(AssertionError):
+        check(tensor, 4.0, 1.0, 0.4)
 
 
 def test_bad_input_is_refused():

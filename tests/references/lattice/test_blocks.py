@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -36,16 +38,27 @@ def test_a_rigid_motion_strains_no_interface(angle: float, x: float, y: float, t
 def test_effective_tensor_against_the_closed_forms(angle: float, poisson: float) -> None:
     """Two derivations: energy of the cell summed over its springs here, by hand there."""
     cell = TetrachiralCell(1.0, angle, 0.01, 3.0, poisson, 1.0)
+    check_effective_tensor(cell_voigt(cell), cell)
+
+
+def check_effective_tensor(found: np.ndarray, cell: TetrachiralCell) -> None:
     kn, kt, _ = cell.springs
-    exact = effective_voigt(kn, kt, angle)
-    assert np.allclose(cell_voigt(cell), exact, rtol=1e-9, atol=1e-9 * kn)
+    assert np.allclose(found, effective_voigt(kn, kt, cell.angle), rtol=1e-9, atol=1e-9 * kn)
+
+
+def check_papers_frequencies(found: np.ndarray) -> None:
+    # an earlier, separate implementation of the same lattice, printed to five digits
+    assert np.allclose(found, [5215.4, 6585.6, 6585.6, 8887.4, 8966.5, 10839.6], rtol=1e-5)
+
+
+def check_homogenised(exact: np.ndarray) -> None:
+    assert np.abs(homogenised(CELL, 25, 6) / exact - 1).max() < 5e-3
 
 
 def test_free_frequencies_of_the_papers_lattice() -> None:
     lattice = BlockLattice(CELL, 25, 25)
     found = lattice.frequencies(6)
-    # an earlier, separate implementation of the same lattice, printed to five digits
-    assert np.allclose(found, [5215.4, 6585.6, 6585.6, 8887.4, 8966.5, 10839.6], rtol=1e-5)
+    check_papers_frequencies(found)
     stiffness = lattice.assemble(spring_interface(CELL)).toarray()
     dense = eigh(stiffness, lattice.mass().toarray(), eigvals_only=True, subset_by_index=[0, 8])
     assert np.allclose(found, np.sqrt(dense[3:]), rtol=1e-8)
@@ -53,8 +66,7 @@ def test_free_frequencies_of_the_papers_lattice() -> None:
 
 
 def test_homogenised_elements_agree_within_half_a_per_cent() -> None:
-    exact = BlockLattice(CELL, 25, 25).frequencies(6)
-    assert np.abs(homogenised(CELL, 25, 6) / exact - 1).max() < 5e-3
+    check_homogenised(BlockLattice(CELL, 25, 25).frequencies(6))
 
 
 def test_homogenisation_error_falls_with_the_square_of_the_cells() -> None:
@@ -89,10 +101,29 @@ def test_two_blocks_by_hand() -> None:
         assert np.abs(found / exact - 1).min() < 1e-12
 
 
-def test_one_per_cent_in_a_spring_is_seen() -> None:
-    lattice = BlockLattice(CELL, 6, 6)
-    found = lattice.frequencies(3, interface=1.01 * spring_interface(CELL))
-    assert np.allclose(found / lattice.frequencies(3), np.sqrt(1.01), rtol=1e-9)
+@pytest.mark.parametrize("name", ["side", "angle", "thickness", "young", "poisson", "density"])
+def test_one_per_cent_in_the_cell_is_seen(name: str) -> None:
+    # ν = 1/2 is as large as it may be: one per cent less
+    off = replace(CELL, **{name: 0.99 * getattr(CELL, name)})
+    with pytest.raises(AssertionError):
+        check_papers_frequencies(BlockLattice(off, 25, 25).frequencies(6))
+
+
+def test_one_per_cent_in_the_frequencies_is_seen() -> None:
+    exact = BlockLattice(CELL, 25, 25).frequencies(6)
+    with pytest.raises(AssertionError):
+        check_homogenised(1.01 * exact)
+    with pytest.raises(AssertionError):
+        check_papers_frequencies(BlockLattice(CELL, 25, 25).frequencies(
+            6, interface=1.01 * spring_interface(CELL)))  # fmt: skip
+
+
+@pytest.mark.parametrize("entry", [(0, 0), (0, 1), (0, 2), (2, 2)])
+def test_one_per_cent_in_the_effective_tensor_is_seen(entry: tuple[int, int]) -> None:
+    tensor = cell_voigt(CELL)
+    tensor[entry] *= 1.01
+    with pytest.raises(AssertionError):
+        check_effective_tensor(tensor, CELL)
 
 
 def test_bad_input_is_refused() -> None:
