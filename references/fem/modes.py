@@ -142,7 +142,7 @@ def in_plane_frequencies(
 
     Examples
     --------
-    A square with C11 − C12 = 1, ρ = 1 has Lamé's mode at ω = π/L exactly, here the third:
+    A square with C11 − C12 = 1, ρ = 1 has Lamé's mode at ω = π/L exactly:
 
     >>> voigt = [[1.5, 0.5, 0.0], [0.5, 1.5, 0.0], [0.0, 0.0, 1.0]]
     >>> w = in_plane_frequencies(voigt, 1.0, 1.0, 1.0, 8, elements=8)

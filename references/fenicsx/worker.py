@@ -6,6 +6,29 @@ nothing of it is imported here. Under ``mpirun`` the mesh is distributed over th
 The problem names its nodes itself (vertices, for quadratic elements also mid-sides) and says
 which ones each triangle has. dolfinx renumbers everything; nodes are found again triangle by
 triangle, by position, so that the doubled nodes of a slit are never confused.
+
+Keys of the problem (n nodes, c components: 1 in conduction, else 2):
+
+=========================  ==================  ====================================================
+``physics``                str                 ``conduction``, ``elasticity`` or ``modes``
+``order``                  int                 of the elements, 1 or 2
+``points``                 (v, 2)              vertices, m
+``triangles``              (M, 3) int          vertices of each triangle
+``nodes``                  (n, 2)              the problem's own nodes: vertices, then mid-sides
+``element_nodes``          (M, 3 or 6) int     nodes of each triangle, in any order
+``tensor``                 (2, 2) or (3, 3)    conductivity, W/(m K), or stiffness (11, 22, 12), Pa
+``prescribed``             (n, c)              temperature, K, or displacement, m; NaN where free
+``source``                 (n, c), optional    nodal source, W/m³, or body force, N/m³
+``tractions``              int                 number of loaded boundaries (static problems)
+``traction_edges_k``       (e, 2) int          edges of the k-th one, pairs of vertices
+``traction_values_k``      (n, c)              its nodal tractions, Pa; used on those edges only
+``density``                float               kg/m³ (modes)
+``count``                  int                 eigenvalues wanted, rigid motions included (modes)
+``shift``                  float               below the lowest eigenvalue, rad²/s² (modes)
+=========================  ==================  ====================================================
+
+Keys of the answer: ``values`` (n, c), or ``eigenvalues`` (count,) ascending, rad²/s²; ``seconds``
+and ``ranks``.
 """
 
 import contextlib

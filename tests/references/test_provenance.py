@@ -212,6 +212,16 @@ def test_every_stored_reference_is_whole(name: str) -> None:
     assert max(stored.record["estimated_error"].values()) < 2e-3
 
 
+def test_errors_of_the_tetrachiral_tables_are_their_own() -> None:
+    free, clamped = load("tetrachiral-free"), load("tetrachiral-clamped")
+    # exact lattices: what errs is the eigensolver
+    assert 0 < free.error("lattice") < 1e-9
+    assert 0 < clamped.error("lattice") < 1e-9
+    assert clamped.error("continuum_n") != clamped.error("continuum_n_minus_1")
+    shapes = {key for mesh in free.record["meshes"] for key in mesh}
+    assert {"triangles", "quadrilaterals"} <= shapes
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", list(catalogue()))
 def test_every_stored_reference_can_be_made_again(name: str) -> None:

@@ -1,5 +1,7 @@
 """scikit-fem against FEniCSx: same mesh, same element, two codes."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -89,6 +91,41 @@ def test_one_per_cent_is_seen() -> None:
     ours = steady_conduction(mesh, D, lambda x, y: x * x)
     off = bridge.steady_conduction(mesh, D * [[1.01, 1], [1, 1]], lambda x, y: x * x)
     assert relative(off, ours.values) > 1e-5
+
+
+def test_a_lost_rigid_motion_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    mesh, run = rectangle(1, 1, 0.3), bridge.run
+
+    def loses_one(problem: Any, processes: int = 1) -> Any:
+        answer = run(problem, processes)
+        return {**answer, "eigenvalues": answer["eigenvalues"][1:]}
+
+    monkeypatch.setattr(bridge, "run", loses_one)
+    with pytest.raises(FloatingPointError, match="one was lost"):
+        bridge.in_plane_frequencies(mesh, C, 1.0, 3)
+
+
+def test_free_rigid_motions_are_refused_before_any_work() -> None:
+    mesh = rectangle(1, 1, 0.3)
+    with pytest.raises(ValueError, match="translation along axis 2"):
+        bridge.solve_elasticity(mesh, C, {"left": (0, np.nan)}, {"right": (1, 0)})
+    cut = rectangle(1, 1, 0.25, cracks=[((0, -0.5), (0, 0.5))])
+    with pytest.raises(ValueError, match="up to a constant"):
+        bridge.steady_conduction(cut, D, {"left": 0.0})
+    with pytest.raises(ValueError, match="this one has 6"):
+        bridge.in_plane_frequencies(cut, C, 1.0, 3)
+
+
+def test_a_field_that_jumps_across_both_faces() -> None:
+    def jumping(x: NDArray, y: NDArray) -> NDArray:
+        return np.sqrt(np.hypot(x, y)) * np.sin(np.arctan2(y, x) / 2)
+
+    mesh = crack_tip_disc(0.15, tip_size=0.01)
+    data = {"circle": jumping, "crack": jumping}
+    ours = steady_conduction(mesh, np.eye(2), data)
+    assert relative(bridge.steady_conduction(mesh, np.eye(2), data), ours.values) < 1e-11
+    q = np.array([[-0.5, 1e-9], [-0.5, -1e-9], [0.3, 0.2]])
+    assert np.abs(ours.at(q) - jumping(*q.T)).max() < 1e-3
 
 
 def test_a_worker_that_fails_says_why() -> None:
