@@ -104,10 +104,11 @@ def test_linear_elements_converge_at_second_order() -> None:
     exact = np.pi  # Lamé mode of the unit square with C11 − C12 = 1
     voigt = [[1.5, 0.5, 0], [0.5, 1.5, 0], [0, 0, 1.0]]
     errors = []
-    for n in (8, 16, 32):
+    # with 8 elements the shape itself is 15 % off
+    for n in (16, 32, 64):
         modes = in_plane_modes(rectangle(1, 1, 1 / n), voigt, 1.0, 8, order=1)
         found, rest = lame_frequency(modes, 1.0, exact)
-        assert rest < 0.1
+        assert rest < 0.05
         errors.append(abs(found / exact - 1))
     assert 1.6 < np.log2(errors[1] / errors[2]) < 2.5, errors
 
