@@ -19,6 +19,19 @@ def test_no_kink_no_change(material: str) -> None:
     assert np.abs(stored_kinks(material).at(np.array(0.0)) - np.eye(2)).max() < 5e-4
 
 
+def test_the_kinks_error_estimate_holds_where_the_series_is_known() -> None:
+    """Amestoy and Leblond's isotropic F₁₁ and F₁₂ in m = ω/π, up to 20°, where m⁶ = 2e-6."""
+    stored = load("kinks-isotropic")
+    kept = (stored["degrees"] > 0) & (stored["degrees"] <= 20)
+    m, p = stored["degrees"][kept] / 180, np.pi
+    f11 = 1 - 3 * p**2 / 8 * m**2 + (p**2 - 5 * p**4 / 128) * m**4
+    f12 = -3 * p / 2 * m + (10 * p / 3 + p**3 / 16) * m**3
+    f12 += (-2 * p - 133 * p**3 / 180 + 59 * p**5 / 1280) * m**5
+    allowed = stored.error("matrices") * np.abs(stored["matrices"]).max()
+    assert np.abs(stored["matrices"][kept, 0, 0] - f11).max() < allowed
+    assert np.abs(stored["matrices"][kept, 0, 1] - f12).max() < allowed
+
+
 def test_mirror_symmetric_materials_kink_mirrored() -> None:
     table = stored_kinks("silicon")
     assert table.kink_angle(1.0, 0.5) == pytest.approx(-table.kink_angle(1.0, -0.5), abs=1e-5)
