@@ -173,17 +173,10 @@ class Hats:
         stale = np.ones(self.count, dtype=bool) if known is None else self._stale(changed)
         if known is not None and not stale.any():
             return known[1]
-        # Second pieces exist along cracks only: their probes need no more than that strip.
-        views = [
-            _Window(self, stale & (self.piece == piece), h + reach)
-            for piece in range(self._pieces_most)
-        ]
+        probe = _Probe(self)
         values, starts, ends = [], [], []
         for colour in range(self._pieces_most * period**2):
             piece, rest = divmod(colour, period**2)
-            if rest == 0:
-                # Another window: what the last one wrote must not be read.
-                operator.clear()
             colour_row, colour_column = divmod(rest, period)
             lit = (self.piece == piece) & (row % period == colour_row)
             lit &= (column % period == colour_column) & stale
@@ -193,8 +186,9 @@ class Hats:
             right = (colour_column - column + window) % period - window
             source = lookup[piece, row + up + period, column + right + period]
             felt = np.nonzero((source >= 0) & stale[source])[0]
+            probe.light(lit)
             for b in range(c):
-                answer = views[piece].probe(lit, b)[:, felt]
+                answer = probe(b)[:, felt]
                 for a in range(c):
                     values.append(answer[a])
                     starts.append(a * self.count + felt)
@@ -245,39 +239,45 @@ class Hats:
         return entries.data[kept], (offset_i + i)[kept], (offset_j + j)[kept]
 
 
-class _Window:
-    """Products with hats, on the part of the lattice that some of them reach."""
+class _Probe:
+    """Products with hats of one colour, on the part of the lattice that they reach."""
 
-    def __init__(self, hats: Hats, stale: NDArray[np.bool_], margin: int) -> None:
+    def __init__(self, hats: Hats) -> None:
         self.hats, operator = hats, hats.operator
-        h, lattice = hats.cells, operator.bonds.lattice
-        self.values = np.zeros((operator.components, hats.count))
         self.fine = np.zeros((operator.components, len(operator.active)))
         self.image = np.zeros_like(self.fine)
-        self.answer = np.zeros_like(self.values)
-        if not stale.any():
-            return
-        row, column = hats.node // hats.width * h, hats.node % hats.width * h
-        # Everything that a stale hat's image can touch, and the hats that can feel it.
-        low = row[stale].min() - margin, column[stale].min() - margin
-        high = row[stale].max() + margin, column[stale].max() + margin
-        rows, columns = (axis[operator.active] for axis in lattice.cells)
-        inside = (rows >= low[0]) & (rows <= high[0])
-        inside &= (columns >= low[1]) & (columns <= high[1])
-        self.particles = np.nonzero(inside)[0].astype(np.uint64)
-        near = (row >= low[0] - h) & (row <= high[0] + h)
-        near &= (column >= low[1] - h) & (column <= high[1] + h)
-        self.near = np.nonzero(near)[0].astype(np.uint64)
-        self.segments = operator.clipped_segments(*low, *high)
 
-    def probe(self, lit: NDArray[np.bool_], component: int) -> Array:
-        """Pᵀ K P e for the sum e of the lit hats in one component."""
+    def light(self, lit: NDArray[np.bool_]) -> None:
+        """Turn to other hats; their rows of windows do not overlap."""
         hats, operator = self.hats, self.hats.operator
-        self.values[:] = 0.0
-        self.values[component, lit] = 1.0
+        self.lit = lit
+        margin = hats.cells - 1 + operator.bonds.family.reach
+        row, column = np.divmod(hats.node[lit], hats.width)
+        # One window for all lit hats of a node row: short runs of particles cost the kernel more
+        # than the gaps between the hats do.
+        rows, group = np.unique(row, return_inverse=True)
+        low, high = np.full(len(rows), column.max()), np.zeros(len(rows), dtype=np.int64)
+        np.minimum.at(low, group, column)
+        np.maximum.at(high, group, column)
+        spread = np.array([-margin, -margin, margin, margin])
+        boxes = hats.cells * np.column_stack([rows, low, rows, high]) + spread
+        self.segments = operator.windows(boxes)
+        _, size, first = self.segments[:, :3].astype(np.int64).T
+        # Positions first, first + 1, … of every segment.
+        shift = np.repeat(first - np.concatenate([[0], np.cumsum(size)[:-1]]), size)
+        self.particles = (np.arange(size.sum()) + shift).astype(np.uint64)
+        # What other windows left must be neither read nor restricted.
+        operator.clear()
         self.fine[:] = 0.0
-        one = slice(component, component + 1)
-        hats.prolong(self.values[one], self.particles, self.fine[one])
-        operator.product(self.fine, masked=True, segments=self.segments, out=self.image)
-        hats.restrict(self.image, self.near, self.answer)
-        return self.answer
+        self.image[:] = 0.0
+
+    def __call__(self, component: int) -> Array:
+        """Pᵀ K P e for the sum e of the lit hats in one component."""
+        hats = self.hats
+        unit = np.zeros((1, hats.count))
+        unit[0, self.lit] = 1.0
+        if component:
+            self.fine[component - 1, self.particles] = 0.0
+        hats.prolong(unit, self.particles, self.fine[component : component + 1])
+        hats.operator.product(self.fine, masked=True, segments=self.segments, out=self.image)
+        return hats.restrict(self.image)

@@ -20,10 +20,13 @@ from __future__ import annotations
 import os
 from typing import Any
 
-# Waiting OpenMP threads must sleep, not spin: on a machine that does anything else besides, a
-# spinning thread uses up the time slice of the one it waits for, and a product takes ten times
-# as long. Read when the OpenMP runtime is loaded, so set before Numba loads it.
+# Waiting OpenMP threads spin for some microseconds, the time between two products, and then
+# sleep. On a machine that does anything else besides, a thread that spins for longer uses up the
+# time slice of the one it waits for, and a product takes ten times as long; one that sleeps at
+# once wakes too late for small products. Read when the OpenMP runtime is loaded, so set before
+# Numba loads it.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+os.environ.setdefault("GOMP_SPINCOUNT", "1500")
 
 import numba as nb
 import numpy as np

@@ -9,7 +9,6 @@ heat) per unit volume.
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -153,7 +152,7 @@ class BondOperator(LinearOperator):
         """K x for values of shape (components, active), in that shape.
 
         With `masked`, prescribed components of the values and of the result count as zero
-        (instead of the identity rows of `matvec`). With `segments` (from `clipped_segments`,
+        (instead of the identity rows of `matvec`). With `segments` (from `windows`,
         after `clear`) only their particles are read and written in `out`.
         """
         segments = self.segments if segments is None else segments
@@ -170,17 +169,30 @@ class BondOperator(LinearOperator):
         """Forget the last field: needed before products on a part of the body."""
         self._grid.fill(0.0)
 
-    def clipped_segments(self, row0: int, column0: int, row1: int, column1: int) -> Any:
-        """The parts of the segments within a window of the padded grid (ends included)."""
+    def windows(self, boxes: NDArray[np.int64]) -> NDArray[np.uint64]:
+        """The parts of the segments within disjoint boxes of the padded grid.
+
+        Parameters
+        ----------
+        boxes : ndarray of int, shape (n, 4)
+            First row, first column, last row, last column of each, ends included.
+        """
         width = self.bonds.lattice.shape[1]
         segments = self.segments.astype(np.int64)
+        # Segments follow the lattice's order, row by row.
         row, column = segments[:, 0] // width, segments[:, 0] % width
-        start = np.maximum(column, column0) - column
-        stop = np.minimum(column + segments[:, 1], column1 + 1) - column
-        kept = (row >= row0) & (row <= row1) & (stop > start)
-        clipped = segments + start[:, None] * np.array([1, 0, 1, 0, 1, 1])
-        clipped[:, 1] = stop - start
-        return np.ascontiguousarray(clipped[kept], dtype=np.uint64)
+        first = np.searchsorted(row, boxes[:, 0])
+        last = np.searchsorted(row, boxes[:, 2], side="right")
+        count = last - first
+        box = np.repeat(np.arange(len(boxes)), count)
+        number = np.arange(count.sum()) + np.repeat(first - (np.cumsum(count) - count), count)
+        column, segments = column[number], segments[number]
+        start = np.maximum(column, boxes[box, 1]) - column
+        stop = np.minimum(column + segments[:, 1], boxes[box, 3] + 1) - column
+        kept = stop > start
+        segments += start[:, None] * np.array([1, 0, 1, 0, 1, 1])
+        segments[:, 1] = stop - start
+        return np.ascontiguousarray(segments[kept], dtype=np.uint64)
 
     def apply_grid(
         self, grid: Array, segments: NDArray[np.uint64] | None = None, out: Array | None = None

@@ -44,15 +44,26 @@ class Row:
         return asdict(self)
 
 
-def _timed(product: Callable[[], Any], batches: int = 15) -> float:
-    """Median seconds of one call, after a warm-up."""
-    product()
-    times = []
-    for _ in range(batches):
-        begun = perf_counter()
+def _timed(products: dict[str, Callable[[], Any]], rounds: int = 15) -> dict[str, float]:
+    """Median seconds of a call of each, taken in turns: a drifting machine drifts for all."""
+    for product in products.values():
         product()
-        times.append(perf_counter() - begun)
-    return median(times)
+    times: dict[str, list[float]] = {name: [] for name in products}
+    for _ in range(rounds):
+        for name, product in products.items():
+            # The first call finds its data in memory, the others in the caches they leave.
+            product()
+            begun = perf_counter()
+            for _ in range(3):
+                product()
+            times[name].append((perf_counter() - begun) / 3)
+    return {name: median(samples) for name, samples in times.items()}
+
+
+def _with_threads(count: int, product: Callable[[], Any]) -> Any:
+    """Call `product` on that many threads."""
+    numba.set_num_threads(count)
+    return product()
 
 
 def _sparse_formats(matrix: sparse.csr_array, components: int) -> dict[str, tuple[Any, int]]:
@@ -86,69 +97,45 @@ def kernel(resolution: int = 120) -> list[Row]:
     """
     rows = []
     threads = numba.get_num_threads()
-    for name, scene in kernel_scenes(resolution).items():
+    for kind, scene in kernel_scenes(resolution).items():
         operator = scene.discretise().operator
         x = np.random.default_rng(1).normal(size=operator.shape[0])
-        exact = operator.matvec(x)
-        moved = 8 * 2 * x.size + operator.nbytes
-        numba.set_num_threads(1)
-        own = _timed(partial(operator.matvec, x))
-        numba.set_num_threads(threads)
-        several = _timed(partial(operator.matvec, x))
-        bonds = operator.directed_bonds
-        rows.append(
-            Row(
-                f"{name}: matrix-free",
-                {
-                    "ms": 1e3 * own,
-                    "bonds_per_s": bonds / own,
-                    "bytes": operator.nbytes,
-                    "bytes_per_s": moved / own,
-                    "slower": 1.0,
-                    "memory": 1.0,
-                    "error": 0.0,
-                    "threads": 1,
-                },
-            )
-        )
-        rows.append(
-            Row(
-                f"{name}: matrix-free, {threads} threads",
-                {
-                    "ms": 1e3 * several,
-                    "bonds_per_s": bonds / several,
-                    "bytes": operator.nbytes,
-                    "bytes_per_s": moved / several,
-                    "slower": several / own,
-                    "memory": 1.0,
-                    "error": 0.0,
-                    "threads": threads,
-                },
-            )
-        )
-        formats = _sparse_formats(operator.to_csr(), operator.components)
-        for label, (product, size) in formats.items():
-            blocked = "BSR" in label
-            c = operator.components
-            given = x.reshape(c, -1).T.ravel() if blocked else x
-            seconds = _timed(partial(product, given))
-            y = product(given)
-            y = y.reshape(-1, c).T.ravel() if blocked else y
-            rows.append(
-                Row(
-                    f"{name}: {label}",
-                    {
-                        "ms": 1e3 * seconds,
-                        "bonds_per_s": bonds / seconds,
-                        "bytes": size,
-                        "bytes_per_s": (size + 16 * x.size) / seconds,
-                        "slower": seconds / own,
-                        "memory": size / operator.nbytes,
-                        "error": float(np.abs(y - exact).max() / np.abs(exact).max()),
-                        "threads": 1,
-                    },
-                )
-            )
+        exact, c = operator.matvec(x), operator.components
+        formats = _sparse_formats(operator.to_csr(), c)
+        interleaved = x.reshape(c, -1).T.ravel()
+        given = {name: interleaved if "BSR" in name else x for name in formats}
+        own = partial(operator.matvec, x)
+        several = f"matrix-free, {threads} threads"
+        one = partial(_with_threads, 1, own)
+        try:
+            # Apart from the formats, which stream through the caches: their turns would be
+            # measured, not the threads.
+            pair = _timed({"matrix-free": one, several: partial(_with_threads, threads, own)})
+            numba.set_num_threads(1)
+            rest = {name: partial(f[0], given[name]) for name, f in formats.items()}
+            seconds = _timed({"matrix-free": own, **rest})
+        finally:
+            numba.set_num_threads(threads)
+        taken_and_base = {name: (t, pair["matrix-free"]) for name, t in pair.items()}
+        taken_and_base |= {name: (seconds[name], seconds["matrix-free"]) for name in formats}
+        sizes = {name: size for name, (_, size) in formats.items()}
+        for name, (taken, base) in taken_and_base.items():
+            size, error = sizes.get(name, operator.nbytes), 0.0
+            if name in formats:
+                y = formats[name][0](given[name])
+                y = y.reshape(-1, c).T.ravel() if "BSR" in name else y
+                error = float(np.abs(y - exact).max() / np.abs(exact).max())
+            values = {
+                "ms": 1e3 * taken,
+                "bonds_per_s": operator.directed_bonds / taken,
+                "bytes": size,
+                "bytes_per_s": (size + 16 * x.size) / taken,
+                "slower": taken / base,
+                "memory": size / operator.nbytes,
+                "error": error,
+                "threads": threads if name == several else 1,
+            }
+            rows.append(Row(f"{kind}: {name}", values))
     return rows
 
 
