@@ -19,10 +19,8 @@ def test_all_formats_hold_the_same_operator() -> None:
 
 def test_alternative_solvers_reach_the_same_residual() -> None:
     rows = measure.solvers(12, repeats=1)
-    assert [row.name for row in rows[:2]] == [
-        "bond solver, two-level CG",
-        "SciPy CG, block Jacobi, CSR",
-    ]
+    assert rows[0].name == "bond solver, two-level CG, 1 thread"
+    assert "SciPy CG, block Jacobi, CSR" in [row.name for row in rows]
     assert all(row.values["residual"] <= 1.01e-8 for row in rows)
 
 
