@@ -25,10 +25,15 @@ def draw(tables: dict[str, list[dict[str, Any]]], path: Path) -> None:
         particles = [r["values"]["particles"] for r in growth]
         cost = [r["values"]["us_per_particle"] for r in growth]
         axes[2].loglog(particles, cost, "o-", color=style.BLUE)
-        for x, y, row in zip(particles, cost, growth, strict=True):
+        for place, (x, y, row) in enumerate(zip(particles, cost, growth, strict=True)):
             note = f"{row['name']}\n{row['values']['iterations']} it."
             axes[2].annotate(
-                note, (x, y), (0, 9), textcoords="offset points", ha="center", fontsize=8
+                note,
+                (x, y),
+                (0, 9 if place % 2 == 0 else -28),
+                textcoords="offset points",
+                ha="center",
+                fontsize=8,
             )
         axes[2].set(
             xlabel="particles",
