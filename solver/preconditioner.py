@@ -15,6 +15,7 @@ wave that the lattice resolves), which is why two levels do even for a million p
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from time import perf_counter
 
 import numpy as np
@@ -226,7 +227,7 @@ def changed_particles(one: BondOperator, other: BondOperator) -> NDArray[np.int6
     return np.nonzero(differs[one.active])[0]
 
 
-def _factorise(matrix: sparse.csc_array, regularisation: float):  # type: ignore[no-untyped-def]
+def _factorise(matrix: sparse.csc_array, regularisation: float) -> Callable[[Array], Array]:
     """Solver of the coarse matrix."""
     diagonal = np.abs(matrix.diagonal())
     shift = regularisation * np.maximum(diagonal, diagonal.max())
@@ -236,4 +237,5 @@ def _factorise(matrix: sparse.csc_array, regularisation: float):  # type: ignore
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
-    return factors.solve
+    solve: Callable[[Array], Array] = factors.solve
+    return solve
