@@ -230,8 +230,19 @@ def weighted_rows(rows, pointer, index, weight, values, out):
     """Some rows of a sparse matrix (compressed rows) times each component of (c, columns)."""
     for r in nb.prange(rows.size):
         row = rows[r]
-        for c in range(values.shape[0]):
-            total = 0.0
-            for k in range(pointer[row], pointer[row + 1]):
-                total += weight[k] * values[c, index[k]]
-            out[c, row] = total
+        begin, end = pointer[row], pointer[row + 1]
+        if values.shape[0] == 3:
+            # Indices and weights are read once for all three.
+            x, y, z = 0.0, 0.0, 0.0
+            for k in range(begin, end):
+                w, column = weight[k], index[k]
+                x += w * values[0, column]
+                y += w * values[1, column]
+                z += w * values[2, column]
+            out[0, row], out[1, row], out[2, row] = x, y, z
+        else:
+            for c in range(values.shape[0]):
+                total = 0.0
+                for k in range(begin, end):
+                    total += weight[k] * values[c, index[k]]
+                out[c, row] = total
