@@ -58,8 +58,9 @@ def speed(
         ),
     )
     for title, run, judge in studies:
-        with console.status(f"{title} …"):
-            rows = run()
+        # No spinner: its thread would take its share of what is measured.
+        console.print(f"{title} …")
+        rows = run()
         console.print(_table(title, rows))
         tables[title] = [row.as_dict() for row in rows]
         found += judge(rows) if judge else []
