@@ -13,6 +13,7 @@ import os
 import tempfile
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
+from dataclasses import fields as fields_of
 from pathlib import Path
 from typing import Any
 
@@ -177,7 +178,7 @@ def _describe(m: Measurement, arrays: dict[str, np.ndarray]) -> dict[str, Any]:
             arrays[f"{key}"], arrays[f"{key}_reference"] = item.computed, item.reference
     data["lines"] = []
     for i, line in enumerate(m.lines):
-        entry = {k: getattr(line, k) for k in ("title", "xlabel", "ylabel", "over_resolutions")}
+        entry = {f.name: getattr(line, f.name) for f in fields_of(line) if f.name != "curves"}
         data["lines"].append({**entry, "curves": [curve.label for curve in line.curves]})
         for j, curve in enumerate(line.curves):
             for name in CURVE:
@@ -205,8 +206,7 @@ def _restore(data: dict[str, Any], archive: Path) -> Measurement:
         for j, label in enumerate(entry["curves"]):
             given: dict[str, Any] = {name: arrays.get(f"line{i}_{j}_{name}") for name in CURVE}
             curves.append(Curve(label, **given))
-        head = (entry["title"], entry["xlabel"], entry["ylabel"])
-        lines.append(LinePlot(*head, tuple(curves), entry["over_resolutions"]))
+        lines.append(LinePlot(**{**entry, "curves": tuple(curves)}))
     return Measurement(
         unknowns=data["unknowns"],
         quantities={k: float(v) for k, v in data["quantities"].items()},

@@ -94,20 +94,24 @@ def line_plot(line: LinePlot, series: Mapping[int, LinePlot], length: str = "a")
             curves = [(curve.label, curve) for curve in line.curves]
             drawn = list(line.curves)
         for curve in drawn:
-            label = "closed form" if curve is drawn[0] else None
+            label = line.reference_label if curve is drawn[0] else None
             x = curve.abscissa if curve.reference_abscissa is None else curve.reference_abscissa
             axis.plot(x, curve.reference, "k-", linewidth=1.1, label=label, zorder=2)
         for index, (label, curve) in enumerate(curves):
-            shown = markers(curve.abscissa, curve.computed)
+            shown = markers(curve.abscissa, curve.computed, 60 if line.joined else 30)
             look = style.of_index(index)
             axis.plot(
-                curve.abscissa[shown], curve.computed[shown], linestyle="none", zorder=3,
+                curve.abscissa[shown], curve.computed[shown], zorder=3,
+                linestyle="-" if line.joined else "none", linewidth=0.9,
                 label=label, markerfacecolor="none", markeredgewidth=1.2, **look,
             )  # fmt: skip
         axis.set_xlabel(line.xlabel)
         axis.set_ylabel(line.ylabel)
         axis.set_title(line.title)
-        axis.legend(loc="best")
+        if len(curves) > 5:
+            _legend_below(axis)
+        else:
+            axis.legend(loc="best")
         return figure
 
 

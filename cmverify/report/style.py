@@ -70,4 +70,5 @@ def of_method(name: str, index: int = 0) -> dict[str, Any]:
 
 def of_index(index: int) -> dict[str, Any]:
     """Colour and marker of the i-th curve of a line plot."""
-    return {"color": CYCLE[index % len(CYCLE)], "marker": MARKERS[index % len(MARKERS)]}
+    turn, place = divmod(index, len(CYCLE))
+    return {"color": CYCLE[place], "marker": MARKERS[(place + turn) % len(MARKERS)]}

@@ -128,6 +128,24 @@ def _bond_strains() -> None:
     vanishes(shear - (_E12 * (c**2 - s**2) + (_E22 - _E11) * c * s), "Eq. 54, gamma")
 
 
+def _energy_densities() -> None:
+    c11, c22, c12, c66, c16, c26 = _C11, _C22, _C12, _C66, _C16, _C26
+    printed = (
+        c11 * _E11**2
+        + c22 * _E22**2
+        + 2 * c12 * _E11 * _E22
+        + 4 * c66 * _E12**2
+        + 4 * c16 * _E12 * _E11
+        + 4 * c26 * _E12 * _E22
+    ) / 2
+    vanishes(printed - _macro_energy(), "Eq. 50")
+    # Half of a pair's energy |xi| (k_n s^2 + k_t gamma^2)/2 over the area |xi| d|xi| d psi.
+    stretch, shear = _strains()
+    pair = _XI * (axial_law(MICRO) * stretch**2 + shear_law(MICRO) * shear**2) / 2
+    area = sp.integrate(pair / 2 * THICKNESS * _XI, (_XI, 0, HORIZON))
+    vanishes(circle_integral(sp.expand(area)) - _energy(), "Eq. 51")
+
+
 def _energy_of_the_horizon() -> None:
     xi_constant = sp.pi / 384
     vanishes(_energy() - _printed_energy(THICKNESS * HORIZON**3 * xi_constant), "Eqs. 55-57")
@@ -172,6 +190,15 @@ ENTRIES = [
         "confirmed",
         "against C_ijkl turned with four direction cosines",
         _turned_moduli,
+    ),
+    Entry(
+        "50-51",
+        "strain energy density, of the continuum and of the bonds",
+        "phi = (C1111 e11^2 + ... + 4 C2212 e12 e22)/2; W = h/4 int |xi|^2 int [...] d|xi|",
+        "as printed, with the d psi that Eq. 51 leaves out",
+        "confirmed",
+        "against eps C eps / 2 and the integral of the pair energies over the horizon",
+        _energy_densities,
     ),
     Entry(
         "52-54",
