@@ -12,6 +12,7 @@ from .errors import (
     MechanismError,
     NegativeCurvatureError,
     SceneError,
+    ToughnessError,
 )
 from .family import Family
 from .influence import Influence
@@ -20,6 +21,7 @@ from .regions import Crack, Region, disc, polygon, rectangle
 from .scene import Discretisation, Scene
 from .solution import Solution, Statistics
 from .tensors import ConductivityTensor, ElasticTensor
+from .toughness import Toughness
 
 __all__ = [
     "CalibrationError",
@@ -42,6 +44,8 @@ __all__ = [
     "Solution",
     "Statistics",
     "Support",
+    "Toughness",
+    "ToughnessError",
     "TwoHarmonic",
     "UniformShear",
     "disc",

@@ -23,3 +23,7 @@ class ConvergenceError(RuntimeError):
 
 class MechanismError(SceneError):
     """A part of the body can move without straining a bond."""
+
+
+class ToughnessError(ValueError):
+    """Fracture energies of no material, or that no non-negative bond energies give."""

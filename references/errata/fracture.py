@@ -1,4 +1,4 @@
-"""Eqs. 92-103 and 109: critical bond energies and energy release rates."""
+"""Eqs. 92-105 and 109: critical bond energies, damage and energy release rates."""
 
 from __future__ import annotations
 
@@ -89,6 +89,71 @@ def _fourfold_constants() -> None:
     require(largest_ratio(16, fourfold=True) > sp.Rational(5, 4), "Fig. 18: n = 16 allows 5/4")
 
 
+def _two_energies() -> None:
+    # Turning the law by zeta under the integral of Eq. 92: psi - zeta at 0 and at pi/2, where
+    # the print has psi + pi/2 (the same for even n).
+    psi = sp.Symbol("psi", real=True)
+    for power in (2, 4, 8):
+        ways = [sp.cos(psi + sign * sp.pi / 2) ** power for sign in (-1, 1)]
+        vanishes(sp.simplify(ways[0] - ways[1]), f"psi -+ pi/2, n = {power}")
+    # The law is largest along the axis and smallest across it, or the other way round.
+    law = _W2 + (_W1 - _W2) * sp.cos(psi) ** 4
+    require(law.subs(psi, 0) == _W1, "along the axis")
+    require(sp.simplify(law.subs(psi, sp.pi / 2)) == _W2, "across the axis")
+    slope = sp.diff(law, psi)
+    vanishes(sp.simplify(slope + 4 * (_W1 - _W2) * sp.cos(psi) ** 3 * sp.sin(psi)), "one sign")
+
+
+def half_circle_series(power: int, frequency: int, phase: sp.Expr) -> sp.Expr:
+    """Integral of cos^n[A (psi + phase)] cos(psi) over the half circle, by cos^n's harmonics."""
+    total = sp.Integer(0)
+    for k in range(power + 1):
+        q = frequency * (power - 2 * k)
+        share = sp.binomial(power, k) / sp.Integer(2) ** power
+        total += share * sp.cos(q * phase) * 2 * sp.cos(q * sp.pi / 2) / (1 - q**2)
+    return total
+
+
+def _general_frequency() -> None:
+    psi = sp.Symbol("psi", real=True)
+    for power, frequency in ((2, 1), (4, 1), (2, 2), (4, 2), (2, 3)):
+        for phase in (sp.Integer(0), sp.pi / (2 * frequency)):
+            law = sp.cos(frequency * (psi + phase)) ** power
+            direct = sp.integrate(
+                sp.expand(law.rewrite(sp.exp) * sp.cos(psi).rewrite(sp.exp)),
+                (psi, -sp.pi / 2, sp.pi / 2),
+            )
+            series = half_circle_series(power, frequency, phase)
+            require(
+                abs(complex((direct - series).evalf(30))) < 1e-20, f"n = {power}, A = {frequency}"
+            )
+    # A sharp law leaves only its lobes: cuts meet them as |cos|, so A bounds the ratio.
+    for frequency, limit in ((2, sp.sqrt(2)), (3, 2 / sp.sqrt(3))):
+        lobes = [sp.pi * k / frequency for k in range(frequency)]
+        cuts = [
+            sum(abs(sp.cos(lobe - turn)) for lobe in lobes)
+            for turn in (sp.Integer(0), sp.pi / (2 * frequency))
+        ]
+        high, low = sorted(cuts, key=float, reverse=True)
+        vanishes(sp.simplify(high / low - limit), f"limit of the ratio, A = {frequency}")
+    ratios = [float(largest_ratio(n, fourfold=True)) for n in (2, 4, 8, 16, 32)]
+    require(ratios == sorted(ratios) and ratios[-1] < 2**0.5, "rises with n, to sqrt 2")
+    require(largest_ratio(4, fourfold=True) > 1, "G at pi/4 is the larger one for w_c1 > w_c2")
+
+
+def _damage() -> None:
+    # mu as a function of the direction on a family of unit radius, half of whose bonds are
+    # broken: integrated over x', where mu depends on it, d is 1/2; x is a constant there.
+    r, psi = sp.symbols("r psi", positive=True)
+    area = sp.integrate(r, (r, 0, 1), (psi, 0, 2 * sp.pi))
+    intact = sp.integrate(r, (r, 0, 1), (psi, 0, sp.pi))
+    vanishes(1 - intact / area - sp.Rational(1, 2), "half of the bonds")
+    mu = sp.Function("mu")(sp.Symbol("x"), sp.Symbol("x_prime"))
+    # Over dx the ratio would be free of x and not of x': no function of position.
+    printed = sp.Integral(mu, (sp.Symbol("x"), 0, 1))
+    require(printed.free_symbols == {sp.Symbol("x_prime")}, "over dx nothing depends on x")
+
+
 def _release_rate() -> None:
     # Crack closure in mode I: s22 = K/sqrt(2 pi x) ahead times the opening at distance a - x
     # behind, which by Eq. 81 is -2 sqrt(2 r/pi) K Im[(mu1 q2 - mu2 q1)/(mu1 - mu2)].
@@ -134,6 +199,15 @@ ENTRIES = [
         _triple_integral,
     ),
     Entry(
+        "93-95",
+        "two-lobe law at its two orientations",
+        "w_c = w_c2 + (w_c1 - w_c2) cos^n(psi - zeta)",
+        "as printed",
+        "confirmed",
+        "Eq. 95 turns the other way, which even n allows; w_c1 and w_c2 are its extremes",
+        _two_energies,
+    ),
+    Entry(
         "96-100",
         "critical bond energies, two-lobe law",
         "w_c1, w_c2 for n = 2, 4, 8",
@@ -152,6 +226,16 @@ ENTRIES = [
         _largest_ratios,
     ),
     Entry(
+        "101",
+        "fourfold law and any frequency A (footnote 7)",
+        "higher n model higher ratios",
+        "as printed; the ratio of a law of frequency A stays below that of |cos| summed over its "
+        "A lobes: sqrt 2 for A = 2, 2/sqrt 3 for A = 3",
+        "confirmed",
+        "by the finite Fourier series of cos^n, which holds for every even n and every A",
+        _general_frequency,
+    ),
+    Entry(
         "102-103",
         "critical bond energies, fourfold law",
         "w_c1, w_c2 for n = 4",
@@ -159,6 +243,15 @@ ENTRIES = [
         "confirmed",
         "put into Eq. 92 they return both fracture energies; ratio up to 128/107 = 1.196",
         _fourfold_constants,
+    ),
+    Entry(
+        "105",
+        "damage",
+        "d = 1 - int mu dx / int dx over H_x",
+        "d = 1 - int mu dx' / int dx' over H_x",
+        "wrong",
+        "the integrals run over the neighbours x'; over dx no function of x would be left",
+        _damage,
     ),
     Entry(
         "109",
