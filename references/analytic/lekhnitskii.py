@@ -144,7 +144,7 @@ class RootPair(NamedTuple):
         )
 
 
-class _TipBasis:
+class TipBasis:
     """What all the fields share: roots, polynomials in mu, and the root functions at the points."""
 
     def __init__(self, voigt: ArrayLike, x: ArrayLike, y: ArrayLike, face: str | None) -> None:
@@ -211,7 +211,7 @@ def crack_tip_displacement(
         If the tensor is not positive definite, or a coordinate or stress intensity factor is not
         finite.
     """
-    basis = _TipBasis(voigt, x, y, face)
+    basis = TipBasis(voigt, x, y, face)
     parts = [basis.field(f.times(basis.root), KI, KII) for f in (basis.p, basis.q)]
     return np.sqrt(2 / np.pi) * np.stack(parts, axis=-1)
 
@@ -228,7 +228,7 @@ def crack_tip_gradient(
     ValueError
         If a point is the tip itself.
     """
-    basis = _TipBasis(voigt, x, y, face)
+    basis = TipBasis(voigt, x, y, face)
     basis.refuse_tip("displacement gradient")
     rows = []
     for f in (basis.p, basis.q):
@@ -256,7 +256,7 @@ def crack_tip_stress(
     ValueError
         If a point is the tip itself.
     """
-    basis = _TipBasis(voigt, x, y, face)
+    basis = TipBasis(voigt, x, y, face)
     basis.refuse_tip("stress")
     g = basis.inverse
     mu_g = basis.mu.times(g)

@@ -1,12 +1,7 @@
-"""Stress intensity factors by the interaction integral, for any plane anisotropic tensor.
+"""Stress intensity factors of finite-element solutions, for any plane anisotropic tensor.
 
-J. F. Yau, S. S. Wang and H. T. Corten's method (J. Appl. Mech. 47 (1980) 335) in its domain form:
-with the auxiliary fields of pure modes,
-
-    M = ∫ [σ_ij u'_i,1 + σ'_ij u_i,1 − σ_ik ε'_ik δ_1j] q,j dA = 2 Kᵀ A K',
-
-where G = Kᵀ A K and q falls from one at the tip to zero outside. It holds for straight,
-traction-free faces within q's support and no body force there.
+The interaction integral of `references.analytic.interaction` over the elements of a ring about
+the tip.
 """
 
 from dataclasses import dataclass, field
@@ -15,12 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from skfem.quadrature import get_quadrature_tri
 
-from references.analytic.lekhnitskii import (
-    crack_tip_gradient,
-    crack_tip_stress,
-    energy_release_rate,
-)
-from references.analytic.voigt import turned_axes
+from references.analytic.interaction import intensities
+from references.analytic.lekhnitskii import energy_release_rate
 from references.fem.elasticity import ElasticSolution
 from references.fem.evaluation import ELEMENTS
 from references.fem.mesh import Mesh
@@ -76,29 +67,9 @@ def stress_intensity(
     _require_straight_crack(solution.mesh, at, float(angle), radius)
     ring = _ring_elements(solution, at, inner * radius, radius)
     x, gradient, weight = _quadrature(solution, ring)
-    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-    local = (x - at) @ turn.T
-    du = np.einsum("ia,...ab,jb->...ij", turn, gradient, turn)
-    voigt = turned_axes(solution.voigt, angle)
-    strain = np.stack([du[..., 0, 0], du[..., 1, 1], du[..., 0, 1] + du[..., 1, 0]], axis=-1)
-    stress = _matrix(strain @ voigt.T)
-    dq = _slope(local, inner * radius, radius)
-
-    products = []
-    for mode in ((1.0, 0.0), (0.0, 1.0)):
-        du_aux = crack_tip_gradient(voigt, local[..., 0], local[..., 1], *mode)
-        stress_aux = _matrix(crack_tip_stress(voigt, local[..., 0], local[..., 1], *mode))
-        mutual = np.einsum("...ij,...ij->...", stress, du_aux)
-        vector = np.einsum("...ij,...i->...j", stress, du_aux[..., 0])
-        vector += np.einsum("...ij,...i->...j", stress_aux, du[..., 0])
-        vector[..., 0] -= mutual
-        # q falls outwards, hence the sign
-        products.append(-np.sum(np.einsum("...j,...j->...", vector, dq) * weight))
-    g11, g22 = (energy_release_rate(voigt, *mode) for mode in ((1.0, 0.0), (0.0, 1.0)))
-    g12 = (energy_release_rate(voigt, 1.0, 1.0) - g11 - g22) / 2
-    k1, k2 = np.linalg.solve(2 * np.array([[g11, g12], [g12, g22]]), products)
-    rate = energy_release_rate(voigt, float(k1), float(k2))
-    return StressIntensity(float(k1), float(k2), rate, solution.mesh)
+    k1, k2 = intensities(solution.voigt, x - at, gradient, weight, angle, inner * radius, radius)
+    rate = energy_release_rate(solution.voigt, k1, k2, angle)
+    return StressIntensity(k1, k2, rate, solution.mesh)
 
 
 def _require_straight_crack(
@@ -128,19 +99,6 @@ def _require_straight_crack(
                 "within the integration ring the crack is not a straight line that arrives at the"
                 f" tip along the angle {angle:g}: wrong angle, or a kink or another crack"
             )
-
-
-def _matrix(voigt_stress: NDArray[np.float64]) -> NDArray[np.float64]:
-    s11, s22, s12 = np.moveaxis(voigt_stress, -1, 0)
-    return np.stack([np.stack([s11, s12], -1), np.stack([s12, s22], -1)], -2)
-
-
-def _slope(local: NDArray[np.float64], inner: float, outer: float) -> NDArray[np.float64]:
-    """Gradient of −q, with q = 1 inside, 0 outside and a smooth cubic between."""
-    r = np.hypot(local[..., 0], local[..., 1])
-    s = np.clip((r - inner) / (outer - inner), 0, 1)
-    fall = 6 * s * (1 - s) / (outer - inner)
-    return fall[..., None] * local / np.maximum(r, 1e-300)[..., None]
 
 
 def _ring_elements(
