@@ -53,6 +53,19 @@ def tetrachiral() -> Array:
     return effective_voigt(*interface_stiffness(10e6, 0.5, length, side / 500), beta)
 
 
+def bone_fracture_energies() -> tuple[float, float]:
+    """Fracture energies of cortical bone across and along its fibres, J/m² (Sect. 3.1.2).
+
+    From K_cl = 6.5 and K_cr = 4.0 MPa√m (Behiri and Bonfield 1989) by the generalised
+    Sih–Paris–Irwin modulus, which Eq. 109 misprints: a crack across the fibres runs along axis 2.
+    """
+    from references.analytic.lekhnitskii import energy_release_rate
+
+    pascal = 1e9 * TENSORS["bone"]
+    across = energy_release_rate(pascal, 6.5e6, 0.0, np.pi / 2)
+    return across, energy_release_rate(pascal, 4.0e6, 0.0)
+
+
 def conductivity(ratio: float, angle: float) -> Array:
     """Conductivity with principal values `ratio` (along `angle`, rad) and 1, shape (2, 2)."""
     c, s = np.cos(angle), np.sin(angle)
