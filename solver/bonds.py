@@ -9,6 +9,7 @@ because fields are zero outside the body; it is *truncated* and only its diagona
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from functools import cached_property
 
 import numpy as np
@@ -131,6 +132,35 @@ class Bonds:
             factors[:, np.searchsorted(self.special, broken_at)] *= ~broken_there
         #: Factor of each bond of a special particle, shape (family size, special).
         self.factors: Array = factors
+
+    def breaking(self, offsets: Indices, origins: Indices) -> Bonds:
+        """These bonds with some more of them broken; what has not changed is shared.
+
+        Parameters
+        ----------
+        offsets, origins : ndarray of int, shape (n,)
+            Half offset and particle of origin of each bond that breaks. All must exist.
+        """
+        rows, columns = self.lattice.cells
+        half = self.family.size // 2
+        dx, dy = self.family.offsets[offsets].T
+        ends = self.lattice.number()[rows[origins] + dy, columns[origins] + dx]
+        special = np.union1d(self.special, np.union1d(origins, ends))
+        if len(special) == len(self.special):
+            factors = self.factors.copy()
+        else:
+            factors = np.empty((self.family.size, len(special)))
+            known = np.zeros(len(special), dtype=bool)
+            known[np.searchsorted(special, self.special)] = True
+            factors[:, known] = self.factors
+            # A particle becomes special: as yet its bonds are those of the bulk.
+            factors[:, ~known] = self.exist(special[~known])
+        factors[offsets, np.searchsorted(special, origins)] = 0.0
+        factors[offsets + half, np.searchsorted(special, ends)] = 0.0
+        result = copy(self)
+        result.__dict__.pop("column", None)
+        result.special, result.factors = special, factors
+        return result
 
     def exist(self, particles: Indices) -> Mask:
         """Which neighbours the particles have, shape (family size, particles)."""

@@ -20,7 +20,8 @@ Where = Region | Callable[[Array, Array], Any]
 Value = float | ArrayLike | Callable[[Array, Array], Any]
 
 
-def _select(lattice: Lattice, where: Where) -> Mask:
+def select(lattice: Lattice, where: Where) -> Mask:
+    """Particles in a region, or those for which ``where(x, y)`` is true, shape (N,)."""
     x, y = lattice.points.T
     if isinstance(where, Region):
         return where.contains(x, y)
@@ -117,7 +118,7 @@ class Support:
     @classmethod
     def where(cls, where: Where, **values: Value) -> Support:
         """Particles in a region, or those for which ``where(x, y)`` is true."""
-        return cls(lambda lattice: _select(lattice, where), **values)
+        return cls(lambda lattice: select(lattice, where), **values)
 
     def columns(self, elastic: bool) -> list[tuple[int, Value, int, int]]:
         """(unknown, value, component of it, components it has) of everything prescribed."""
@@ -157,7 +158,7 @@ class Load:
     def _body(cls, kind: str, value: Value, components: int, where: Where | None) -> Load:
         def density(lattice: Lattice) -> tuple[Mask, Array]:
             everywhere = np.ones(lattice.count, dtype=bool)
-            mask = everywhere if where is None else _select(lattice, where)
+            mask = everywhere if where is None else select(lattice, where)
             if not mask.any():
                 raise SceneError(f"a {kind} acts on no particle")
             return mask, evaluate(value, lattice.points[mask], components, f"a body {kind}")

@@ -107,6 +107,8 @@ class TwoLevel(LinearOperator):
     previous : TwoLevel, optional
         Of the same body before some bonds broke: hats are split anew along what broke, and only
         the coarse entries that feel it are computed again.
+    coarse : csc_array, optional
+        The Galerkin matrix, where it is known (from a checkpoint).
 
     Raises
     ------
@@ -121,6 +123,7 @@ class TwoLevel(LinearOperator):
         degree: int = 2,
         regularisation: float = _REGULARISATION,
         previous: TwoLevel | None = None,
+        coarse: sparse.csc_array | None = None,
     ) -> None:
         super().__init__(operator.dtype, operator.shape)
         begun = perf_counter()
@@ -136,7 +139,9 @@ class TwoLevel(LinearOperator):
             known = previous.hats, previous.coarse
             changed = changed_particles(previous.operator, operator)
         #: Galerkin matrix of the hats.
-        self.coarse: sparse.csc_array = self.hats.galerkin(known, changed)
+        self.coarse: sparse.csc_array = (
+            self.hats.galerkin(known, changed) if coarse is None else coarse
+        )
         self._solve = _factorise(self.coarse, regularisation)
         self.largest = self._largest_eigenvalue()
         #: Wall time of the set-up, s.

@@ -1,0 +1,76 @@
+"""Numba kernels over single bonds: energies of all bonds of a body, bond by bond or summed.
+
+Arrays and scalars in, arrays out. Bonds are counted once, by half offset o and particle of
+origin p, and p's neighbour along o is `steps[o]` cells further on the flattened padded grid.
+Segments are runs of neighbouring particles of one grid row, (first cell, length, first particle).
+Every entry is written by one thread, so results do not depend on the number of threads.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba as nb
+
+_OPTIONS: Any = {"parallel": True, "cache": True, "fastmath": {"contract", "nsz"}, "nogil": True}
+
+
+@nb.njit(**_OPTIONS)
+def bond_energies(grid, segments, steps, geometry, factors, tension, out):
+    """Weighted energy f (a s² + b γ²) of every bond, zero where tension is asked for and s < 0.
+
+    Parameters
+    ----------
+    grid : float64 (3, cells)
+        u1, u2 and the rotation times the spacing.
+    segments : uint64 (s, 3)
+    steps : uint64 (h,)
+    geometry : float64 (h, 5)
+        n1, n2, |ξ|/(2 Δx), a, b of each half offset. Here s = η·n and γ = η·t − |ξ|/2 (θ + θ'),
+        not divided by |ξ|: that belongs into a and b.
+    factors : float64 (h, N)
+        0 for bonds that do not exist.
+    tension : bool
+    out : float64 (h, N)
+    """
+    ux, uy, th = grid[0], grid[1], grid[2]
+    for s in nb.prange(segments.shape[0]):
+        cell, size, first = segments[s, 0], segments[s, 1], segments[s, 2]
+        for o in range(steps.size):
+            nx, ny, half = geometry[o, 0], geometry[o, 1], geometry[o, 2]
+            a, b = geometry[o, 3], geometry[o, 4]
+            ahead = cell + steps[o]
+            row, factor = out[o], factors[o]
+            for j in range(size):
+                dx, dy = ux[ahead + j] - ux[cell + j], uy[ahead + j] - uy[cell + j]
+                axial = nx * dx + ny * dy
+                shear = nx * dy - ny * dx - half * (th[ahead + j] + th[cell + j])
+                value = factor[first + j] * (a * axial * axial + b * shear * shear)
+                row[first + j] = 0.0 if tension and axial < 0.0 else value
+
+
+@nb.njit(**_OPTIONS)
+def bond_work(grid, other, segments, steps, geometry, factors, out):
+    """Σ f (a s s' + b γ γ') over the bonds of each segment, for two fields.
+
+    As `bond_energies`, with the second field `other` (3, cells) and `out` (s,).
+    """
+    ux, uy, th = grid[0], grid[1], grid[2]
+    vx, vy, ph = other[0], other[1], other[2]
+    for s in nb.prange(segments.shape[0]):
+        cell, size, first = segments[s, 0], segments[s, 1], segments[s, 2]
+        total = 0.0
+        for o in range(steps.size):
+            nx, ny, half = geometry[o, 0], geometry[o, 1], geometry[o, 2]
+            a, b = geometry[o, 3], geometry[o, 4]
+            ahead = cell + steps[o]
+            factor = factors[o]
+            for j in range(size):
+                dx, dy = ux[ahead + j] - ux[cell + j], uy[ahead + j] - uy[cell + j]
+                ex, ey = vx[ahead + j] - vx[cell + j], vy[ahead + j] - vy[cell + j]
+                shear = nx * dy - ny * dx - half * (th[ahead + j] + th[cell + j])
+                sheer = nx * ey - ny * ex - half * (ph[ahead + j] + ph[cell + j])
+                total += factor[first + j] * (
+                    a * (nx * dx + ny * dy) * (nx * ex + ny * ey) + b * shear * sheer
+                )
+        out[s] = total

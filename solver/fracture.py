@@ -1,0 +1,436 @@
+"""Quasi-static fracture: bonds break, the body finds a new equilibrium, cracks grow.
+
+`grow` raises the load factor of a scene from event to event. A bond breaks when its energy
+reaches its critical value (`solver.breaking`); at an event the most loaded bonds break in small
+batches, each followed by a new equilibrium, until no bond is overloaded. All loads and prescribed
+values scale with the factor, so that one solve at unit load per broken state says everything.
+
+Energies are booked as they occur, per unit thickness: *work* of supports and loads along the
+straight pieces of the load path; *stored* energy of all bonds, summed anew; *dissipated* energy,
+w_c of every broken bond; and *excess*, what breaking sets free beyond that: what a bond held more
+than its w_c when its batch broke, and the potential energy that the body lost in finding its new
+equilibrium (kinetic energy, in a real body). Their balance is a check, not a definition.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import crack_path, restart
+from .breaking import TIE, Breakable, Criterion, Critical, next_batch
+from .conditions import Where
+from .crack_path import CrackPath
+from .equilibrium import Equilibrium
+from .errors import ConvergenceError, MechanismError, NegativeCurvatureError, SceneError
+from .ledger import History, Ledger
+from .programme import Programme
+from .scene import Scene
+from .solution import Solution
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Indices = NDArray[np.int64]
+
+# Share of the bonds that a straight cut breaks per cell of its length: the default batch.
+_BATCH = 0.1
+
+
+class Growth:
+    """A body whose bonds break: what `until` and monitors see, and what `grow` returns.
+
+    Attributes
+    ----------
+    scene : Scene
+    factor : float
+        Load factor now.
+    history : History
+        Loads, energies, counts and the crack's advance at every equilibrium.
+    reason : str
+        Why the run has ended; empty while it goes on.
+    batch : int
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        toughness: Critical | ArrayLike,
+        programme: Programme,
+        no_fail: tuple[Where, ...],
+        tension_only: bool,
+        criterion: Criterion,
+        batch: int | None,
+        tolerance: float,
+        max_iterations: int,
+        monitors: Mapping[str, Callable[[Growth], float]],
+    ) -> None:
+        if scene.surface not in ("none", "volume"):
+            raise SceneError(
+                f"bonds break with surface='none' or 'volume' only, not {scene.surface!r}"
+            )
+        start = scene.discretise()
+        self.scene, self.programme, self.reason = scene, programme, ""
+        self.bonds = Breakable(start, toughness, no_fail, tension_only, criterion)
+        self.batch = _batch_size(batch, start.family.offsets)
+        self.body = Equilibrium(start, tolerance, max_iterations)
+        self.ledger = Ledger(self.body, self.bonds)
+        # Solver options that decide results, for checkpoints.
+        self.options = (no_fail, tension_only, criterion, self.batch, tolerance, max_iterations)
+        self.history = History(tuple(monitors))
+        self._monitors = monitors
+        self.factor, self.target, self.resting = programme.start, 0, True
+        self.log: list[tuple[int, int, float, bool]] = []
+        self.solves: list[tuple[int, int, bool]] = []
+        self._starts = crack_path.initial_tips(scene.cracks, scene.region)
+        self._paths: tuple[int, list[CrackPath]] = (-1, [])
+
+    # ---- what has happened ----------------------------------------------------------------
+
+    @property
+    def breaks(self) -> NDArray[Any]:
+        """Broken bonds in their order: fields offset (half), origin, step, factor.
+
+        `step` is the number of the solve before which the bond broke, `factor` the load then.
+        Bonds of one batch are in no order.
+        """
+        kept = [b[:3] for b in self.log if not b[3]]
+        count = self.bonds.lattice.count
+        return np.array(
+            [(b // count, b % count, step, factor) for b, step, factor in kept],
+            dtype=[("offset", "i8"), ("origin", "i8"), ("step", "i8"), ("factor", "f8")],
+        )
+
+    @property
+    def steps(self) -> NDArray[Any]:
+        """Every solve: bonds broken before it, iterations, preconditioner brought up to date."""
+        return np.array(
+            self.solves, dtype=[("broken", "i8"), ("iterations", "i8"), ("refreshed", "?")]
+        )
+
+    @property
+    def broken_bonds(self) -> Indices:
+        """Flat indices (half offset · N + particle of origin) of broken bonds, in their order."""
+        return np.array([b[0] for b in self.log if not b[3]], dtype=np.int64)
+
+    @property
+    def broken(self) -> Mask:
+        """Broken bonds as `Scene.broken` returns them, shape (family size / 2, N)."""
+        mask = np.zeros(self.bonds.factors.shape, dtype=bool)
+        mask.ravel()[self.broken_bonds] = True
+        return mask
+
+    @property
+    def loose(self) -> Mask:
+        """Particles that came loose and were set aside, shape (N,)."""
+        return self.body.aside
+
+    @property
+    def damage(self) -> Array:
+        """Damage of every particle (Eq. 105), cuts by the scene's cracks included, shape (N,)."""
+        return crack_path.damage(self.body.bonds)
+
+    @property
+    def midpoints(self) -> Array:
+        """Midpoints of the broken bonds, in their order, shape (n, 2), m."""
+        return self.bonds.midpoints(self.broken_bonds)
+
+    @property
+    def paths(self) -> list[CrackPath]:
+        """Way of each crack tip of the scene, the furthest first; see `solver.crack_path`."""
+        if self._paths[0] != len(self.log):
+            broken = self.broken_bonds
+            short = self.bonds.lengths(broken) <= crack_path.SHORT * self.scene.spacing
+            marks = self.bonds.midpoints(broken[short])
+            starts = self._starts
+            if not len(starts) and len(marks):
+                first = [b[1] for b in self.log if not b[3]]
+                early = np.array(first)[short]
+                starts = marks[early == early.min()].mean(axis=0)[None]
+            traced = crack_path.trace(starts, marks, self.scene.spacing)
+            self._paths = len(self.log), traced
+        return self._paths[1]
+
+    @property
+    def path(self) -> Array:
+        """Points of the furthest path, shape (n, 2), m; empty before anything has grown."""
+        return self.paths[0].points if self.paths else np.zeros((0, 2))
+
+    @property
+    def tip(self) -> Array:
+        """Tip of the furthest path, shape (2,), m; NaN before there is one."""
+        return self.paths[0].tip if self.paths else np.full(2, np.nan)
+
+    @property
+    def advance(self) -> float:
+        """Distance of the furthest tip from where its crack began to grow, m."""
+        return self.paths[0].advance if self.paths else 0.0
+
+    @property
+    def unknowns(self) -> Array:
+        """u1, u2 and θ Δx under the present load, shape (components, N)."""
+        return self.factor * self.body.unknowns
+
+    @property
+    def solution(self) -> Solution:
+        """The present equilibrium as a solution, for `solver.recovery` and export."""
+        return self.body.solution(self.factor)
+
+    # ---- what happens ---------------------------------------------------------------------
+
+    def begin(self) -> None:
+        """First equilibrium, loaded to the first factor without breaking anything."""
+        step = self.body.solve()
+        self.solves.append((0, step.iterations, step.refreshed))
+        self.ledger.opened()
+        self.ledger.move(0.0, self.factor)
+        self.record()
+
+    def proceed(self) -> None:
+        """On to the next equilibrium: a batch of bonds breaks, or the load changes."""
+        utilisation = self.bonds.utilisation(self.body.unknowns)
+        if self.programme.control == "following":
+            self._follow(utilisation)
+            return
+        # Bonds are overloaded where λ² q ≥ 1.
+        least = 1.0 / self.factor**2 if self.factor else np.inf
+        batch, _ = next_batch(utilisation, least, self.batch)
+        if len(batch):
+            self.resting = False
+            self._break(batch)
+        elif not self.resting:
+            self._drop(self.body.loose())
+            self.resting = True
+            self.record()
+        else:
+            self._load(float(utilisation.max(initial=0.0)))
+
+    def _load(self, largest: float) -> None:
+        """Change the load to the next event or the next target."""
+        targets = self.programme.targets
+        target = targets[self.target]
+        event = 1.0 / np.sqrt(largest) if largest > 0 else np.inf
+        if target > self.factor and event <= target * (1 + TIE):
+            self._move(self.programme.reach(max(event, self.factor), target))
+            self.record()
+            return
+        if not np.isfinite(target):
+            self.reason = "no load breaks another bond"
+            return
+        self._move(target)
+        self.record()
+        self.target += 1
+        if self.target == len(targets):
+            self.reason = "the programme is done"
+
+    def _follow(self, utilisation: Array) -> None:
+        """Break the next batch at the load that just overloads all of it."""
+        batch, load = next_batch(utilisation, 0.0, self.batch)
+        if not len(batch):
+            self.reason = "no load breaks another bond"
+            return
+        event = 1.0 / float(np.sqrt(load.min()))
+        if event > self.programme.stop:
+            self._move(self.programme.stop)
+            self.resting = True
+            self.record()
+            self.reason = "the programme is done"
+            return
+        self._move(max(event, self.programme.start))
+        self.resting = True
+        self.record()
+        self.resting = False
+        self._break(batch)
+
+    def _move(self, factor: float) -> None:
+        self.ledger.move(self.factor, factor)
+        self.factor = factor
+
+    def _break(self, batch: Indices) -> None:
+        self.ledger.broken(batch, self.factor)
+        self._remove(batch, dropped=False)
+        self._drop(self.body.slack())
+        try:
+            step = self.body.solve()
+        except (ConvergenceError, NegativeCurvatureError):
+            # A part that moves freely may be behind it.
+            particles = self.body.loose()
+            if not len(particles):
+                particles = self.body.hinged()
+            if not len(particles):
+                raise
+            self._drop(particles)
+            step = self.body.solve()
+        self.solves.append((len(batch), step.iterations, step.refreshed))
+        self.ledger.solved(step, self.factor)
+
+    def _remove(self, bonds: Indices, dropped: bool) -> None:
+        step = len(self.solves)
+        self.log += [(int(b), step, self.factor, dropped) for b in bonds]
+        self.bonds.remove(bonds)
+        self.body.break_bonds(*np.divmod(bonds, self.bonds.lattice.count))
+
+    def _drop(self, particles: Indices) -> None:
+        """Set aside particles that cannot carry load, and others that this leaves slack."""
+        while len(particles):
+            bonds = self.bonds.of_particles(particles)
+            self.ledger.dropped(bonds, self.factor)
+            if len(bonds):
+                self._remove(bonds, dropped=True)
+            self.body.set_aside(particles)
+            particles = self.body.slack()
+
+    def record(self) -> None:
+        """Another line of the history."""
+        steps, tip = self.steps, self.tip
+        self.history.add(
+            factor=self.factor,
+            **self.ledger.row(self.factor),
+            broken=len(self.broken_bonds),
+            loose=int(self.loose.sum()),
+            solves=len(steps),
+            iterations=int(steps["iterations"].sum()),
+            advance=self.advance,
+            tip_x=float(tip[0]),
+            tip_y=float(tip[1]),
+            settled=float(self.resting),
+            **{name: float(monitor(self)) for name, monitor in self._monitors.items()},
+        )
+
+
+def grow(
+    scene: Scene,
+    toughness: Critical | ArrayLike,
+    programme: Programme | None = None,
+    *,
+    no_fail: Sequence[Where] = (),
+    tension_only: bool = True,
+    criterion: Criterion = "total",
+    batch: int | None = None,
+    tolerance: float = 1e-7,
+    max_iterations: int = 2_000,
+    max_solves: int | None = None,
+    until: Callable[[Growth], bool] | None = None,
+    monitors: Mapping[str, Callable[[Growth], float]] | None = None,
+    checkpoint: str | os.PathLike[str] | None = None,
+    every: int = 50,
+) -> Growth:
+    """Let cracks grow in an elastic scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Elastic. What it prescribes and applies is the load at factor 1; all of it scales.
+    toughness : object with ``energies(family)``, or array
+        Critical bond energy densities w_c of the family's offsets, J/m⁶ (`solver.Toughness`).
+    programme : Programme, optional
+        By default the load rises from event to event until `until` says stop.
+    no_fail : sequence of Region or callable
+        Where bonds never break: those with an end in a region or where ``f(x, y)`` is true.
+        Bonds between two prescribed particles never do.
+    tension_only : bool
+        Only bonds with s ≥ 0 break.
+    criterion : {"total", "axial"}
+        Energy that is compared with w_c; see `solver.breaking.Breakable` for materials with
+        negative bond stiffness.
+    batch : int, optional
+        Most bonds to break between two equilibria (ties are broken together). By default a tenth
+        of what a straight cut breaks per cell of its length: 17 at m = 5.
+    tolerance : float
+        Relative residual of every equilibrium.
+    max_iterations : int
+        Of one solve.
+    max_solves : int, optional
+        The run ends there.
+    until : callable, optional
+        Called with the `Growth` before every batch, also within an avalanche; the run ends when
+        it returns true.
+    monitors : mapping from name to callable, optional
+        Further columns of the history.
+    checkpoint : path, optional
+        The run is saved there every `every` solves and at its end, and goes on from there if the
+        file exists: results are the same to the last bit as without interruption.
+    every : int
+        Solves between two checkpoints.
+
+    Returns
+    -------
+    Growth
+
+    Raises
+    ------
+    SceneError
+        If scene, toughness and criterion do not fit, or the checkpoint is another run's.
+    NegativeCurvatureError, ConvergenceError
+        If the damaged body has no stable equilibrium that could be found.
+
+    Notes
+    -----
+    A part that comes loose is set aside (`Growth.loose`); if a load acts on it, the run ends and
+    says so in `Growth.reason`.
+
+    Examples
+    --------
+    >>> from solver import Crack, ElasticTensor, Scene, Support, rectangle
+    >>> held = Support.where(lambda x, y: abs(y) > 6, displacement=lambda x, y: 1e-3 * y[:, None]
+    ...     * [0, 1])
+    >>> scene = Scene(rectangle(24, 16), 1.0, ElasticTensor.isotropic(1.0, 0.2), m=3,
+    ...     supports=[held], cracks=[Crack((-13, 0), (0, 0))])
+    >>> run = grow(scene, 1e-6, until=lambda run: run.advance > 3)
+    >>> bool(abs(run.tip[1]) < 1e-9), bool(abs(run.history.imbalance).max() < 1e-8)
+    (True, True)
+    """
+    programme = Programme() if programme is None else programme
+    if until is None and max_solves is None and programme.targets[-1] == np.inf:
+        raise SceneError("the run has no end: give programme.stop, until or max_solves")
+    run = Growth(
+        scene,
+        toughness,
+        programme,
+        tuple(no_fail),
+        tension_only,
+        criterion,
+        batch,
+        tolerance,
+        max_iterations,
+        monitors or {},
+    )
+    mark = restart.fingerprint(run)
+    if checkpoint is None or not restart.load(run, checkpoint, mark):
+        run.begin()
+    saved = len(run.solves)
+    while not run.reason:
+        # What was asked from outside may be asked otherwise when the run goes on.
+        if until is not None and until(run):
+            asked = "as asked (until)"
+        elif max_solves is not None and len(run.solves) >= max_solves:
+            asked = f"{max_solves} solves are done"
+        else:
+            asked = ""
+        if checkpoint is not None and (asked or len(run.solves) >= saved + every):
+            saved = len(run.solves)
+            restart.save(run, checkpoint, mark)
+        if asked:
+            run.reason = asked
+            if not run.resting:
+                run.record()
+            return run
+        try:
+            run.proceed()
+        except MechanismError as error:
+            run.reason = str(error)
+    if checkpoint is not None:
+        restart.save(run, checkpoint, mark)
+    return run
+
+
+def _batch_size(batch: int | None, offsets: NDArray[np.int64]) -> int:
+    if batch is None:
+        # Bonds that a cut along a row of the lattice breaks per cell.
+        return max(1, round(_BATCH * float(np.abs(offsets[:, 1]).sum()) / 2))
+    if isinstance(batch, bool) or int(batch) != batch or batch < 1:
+        raise SceneError(f"a batch holds at least one bond, not {batch}")
+    return int(batch)
