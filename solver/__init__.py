@@ -3,7 +3,7 @@
 Scene -> Lattice + Family -> Moduli + Bonds -> Operator -> statics -> Solution -> recovery
 """
 
-from . import recovery
+from . import fracture, recovery
 from .conditions import Load, Support
 from .errors import (
     CalibrationError,
@@ -17,6 +17,7 @@ from .errors import (
 from .family import Family
 from .influence import Influence
 from .laws import Cosine, Fourfold, TwoHarmonic, UniformShear
+from .programme import Programme
 from .regions import Crack, Region, disc, polygon, rectangle
 from .scene import Discretisation, Scene
 from .solution import Solution, Statistics
@@ -38,6 +39,7 @@ __all__ = [
     "Load",
     "MechanismError",
     "NegativeCurvatureError",
+    "Programme",
     "Region",
     "Scene",
     "SceneError",
@@ -49,6 +51,7 @@ __all__ = [
     "TwoHarmonic",
     "UniformShear",
     "disc",
+    "fracture",
     "polygon",
     "recovery",
     "rectangle",
