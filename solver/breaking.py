@@ -28,8 +28,8 @@ Indices = NDArray[np.int64]
 Criterion = Literal["total", "axial"]
 
 # Utilisations that differ by less than this share are one event: mirror images break together,
-# though rounding and the solver's tolerance tell them apart.
-TIE = 1e-6
+# though the solver's tolerance tells them apart.
+TIE = 1e-4
 
 
 class Critical(Protocol):
@@ -210,8 +210,7 @@ class Breakable:
 
     def energy_of(self, unknowns: Array, bonds: Indices) -> Array:
         """Energy that single bonds hold, J per unit thickness; `bonds` are flat indices."""
-        o, p = np.divmod(bonds, self.lattice.count)
-        q = self.far_end(bonds)
+        o, p, q = self.ends(bonds)
         nx, ny, half, a, b = self._stored[o].T
         field = np.zeros((3, self.lattice.count))
         field[: len(unknowns)] = np.nan_to_num(unknowns)
@@ -225,17 +224,18 @@ class Breakable:
 
     # ---- geometry -----------------------------------------------------------------------
 
-    def far_end(self, bonds: Indices) -> Indices:
-        """Particle at the far end of bonds given by flat index."""
+    def ends(self, bonds: Indices) -> tuple[Indices, Indices, Indices]:
+        """Half offset, particle of origin and particle at the far end of bonds by flat index."""
         o, p = np.divmod(bonds, self.lattice.count)
         rows, columns = self.lattice.cells
         dx, dy = self.family.offsets[o].T
-        return self._number[rows[p] + dy, columns[p] + dx]
+        return o, p, self._number[rows[p] + dy, columns[p] + dx]
 
     def midpoints(self, bonds: Indices) -> Array:
         """Midpoints of bonds, shape (n, 2), m."""
         points = self.lattice.points
-        return 0.5 * (points[bonds % self.lattice.count] + points[self.far_end(bonds)])
+        _, p, q = self.ends(bonds)
+        return 0.5 * (points[p] + points[q])
 
     def lengths(self, bonds: Indices) -> Array:
         """Lengths of bonds, m."""

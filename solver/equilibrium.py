@@ -30,8 +30,9 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 
-# Iterations above those with a fresh preconditioner after which it is brought up to date.
-_PATIENCE = 3
+# Iterations above those that a fresh preconditioner would have taken after which it is brought up
+# to date.
+_PATIENCE = 2
 
 
 @dataclass(frozen=True)
@@ -85,10 +86,12 @@ class Equilibrium:
         self.aside = np.zeros(discretisation.lattice.count, dtype=bool)
         self.x: Array = np.zeros(self.operator.shape[0])
         self.preconditioner: LinearOperator | None = None
+        #: Right-hand side, kept while no bond of a prescribed particle breaks.
+        self.rhs: Array | None = None
         self.iterations, self.residual, self.seconds = 0, 0.0, 0.0
-        # For the preconditioner: iterations when it was fresh, whether it is due, and how many
-        # bonds were gone when it was made.
-        self.base, self.worn, self.built, self.gone = 0, False, 0, 0
+        # For the preconditioner: iterations a decade of the residual when it was fresh, whether it
+        # is due, and how many bonds were gone when it was made.
+        self.pace, self.worn, self.built, self.gone = 0.0, False, 0, 0
 
     @property
     def prescribed(self) -> Mask:
@@ -134,10 +137,14 @@ class Equilibrium:
 
     # ---- changes ------------------------------------------------------------------------
 
-    def break_bonds(self, offsets: Indices, origins: Indices) -> None:
-        """Break bonds; the next `solve` finds the new equilibrium."""
+    def break_bonds(self, offsets: Indices, origins: Indices, ends: Indices) -> None:
+        """Break bonds, given by half offset and both ends; then `solve` for the equilibrium."""
         self.bonds = self.bonds.breaking(offsets, origins)
         self.gone += len(offsets)
+        # What prescribed particles exert changes only with bonds of theirs.
+        touched: Mask = np.logical_or.reduce(self.start.prescribed, axis=0)
+        if touched[origins].any() or touched[ends].any():
+            self.rhs = None
         self.operator = BondOperator(self.bonds, self.operator.moduli, self.prescribed)
 
     def set_aside(self, particles: Indices) -> None:
@@ -155,6 +162,7 @@ class Equilibrium:
         if self.prescribed.all():
             raise MechanismError("all of the body that was free has come loose")
         self.operator = BondOperator(self.bonds, self.operator.moduli, self.prescribed)
+        self.rhs = None
         self.x = unknowns[:, self.operator.active].ravel()
         self.preconditioner = None
 
@@ -179,8 +187,13 @@ class Equilibrium:
 
     # ---- solving ------------------------------------------------------------------------
 
-    def solve(self) -> Step:
+    def solve(self, tolerance: float | None = None) -> Step:
         """Solve for the present bonds, from the last solution.
+
+        Parameters
+        ----------
+        tolerance : float, optional
+            A coarser one than that of the body.
 
         Raises
         ------
@@ -188,29 +201,34 @@ class Equilibrium:
             As `solver.statics.solve`.
         """
         begun = perf_counter()
+        tolerance = self.tolerance if tolerance is None else tolerance
         with threadpool_limits(limits=1, user_api="blas"):
             operator = self.operator
-            rhs = self.discretisation().right_hand_side()
+            if self.rhs is None:
+                self.rhs = self.discretisation().right_hand_side()
+            rhs = self.rhs
             if operator.fixed is not None:
                 given = self.start.values[:, operator.active]
                 self.x.reshape(given.shape)[operator.fixed] = given[operator.fixed]
             before = self.x
             left = rhs - operator.matvec(before)
             refreshed = self._prepare()
-            self.x, iterations = self._iterate(rhs, before)
-            if refreshed:
-                self.base = iterations
-            # It has served; the next solve gets a fresh one.
-            self.worn = iterations > self.base + _PATIENCE
+            self.x, iterations = self._iterate(rhs, before, tolerance)
             right = rhs - operator.matvec(self.x)
-            size = float(np.linalg.norm(rhs))
-            residual = float(np.linalg.norm(right)) / size if size else 0.0
+            size, after = float(np.linalg.norm(rhs)), float(np.linalg.norm(right))
+            residual = after / size if size else 0.0
+            decades = np.log10(max(float(np.linalg.norm(left)), 1e-300) / max(after, 1e-300))
+            if refreshed:
+                self.pace = iterations / max(decades, 1.0)
+            # It has served; the next solve gets a fresh one.
+            self.worn = bool(iterations > self.pace * decades + _PATIENCE)
             self.iterations += iterations
             self.residual, self.seconds = residual, self.seconds + perf_counter() - begun
-            if not residual <= self.tolerance:
+            if not residual <= tolerance:
+                self.x = before
                 raise ConvergenceError(
                     f"equilibrium stopped at a relative residual of {residual:.2e} after "
-                    f"{iterations} iterations; {self.tolerance:.1e} was asked for"
+                    f"{iterations} iterations; {tolerance:.1e} was asked for"
                 )
             released = 0.5 * float((self.x - before) @ (left + right))
         return Step(iterations, refreshed, released * self.start.family.cell)
@@ -227,9 +245,9 @@ class Equilibrium:
         self.built = self.gone
         return True
 
-    def _iterate(self, rhs: Array, start: Array) -> tuple[Array, int]:
+    def _iterate(self, rhs: Array, start: Array, tolerance: float) -> tuple[Array, int]:
         assert self.preconditioner is not None
-        task = Task(rhs, start, self.tolerance, self.max_iterations)
+        task = Task(rhs, start, tolerance, self.max_iterations)
         if not rhs.any():
             return np.zeros_like(rhs), 0
         if self.sign == "indefinite":

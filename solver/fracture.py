@@ -38,6 +38,8 @@ Indices = NDArray[np.int64]
 
 # Share of the bonds that a straight cut breaks per cell of its length: the default batch.
 _BATCH = 0.1
+# Relative residual within an avalanche.
+_ROUGH = 1e-5
 
 
 class Growth:
@@ -83,6 +85,8 @@ class Growth:
         self.history = History(tuple(monitors))
         self._monitors = monitors
         self.factor, self.target, self.resting = programme.start, 0, True
+        # Whether the last equilibrium keeps the tolerance, or is one within an avalanche.
+        self.precise = True
         self.log: list[tuple[int, int, float, bool]] = []
         self.solves: list[tuple[int, int, bool]] = []
         self._starts = crack_path.initial_tips(scene.cracks, scene.region)
@@ -201,6 +205,8 @@ class Growth:
         if len(batch):
             self.resting = False
             self._break(batch)
+        elif not self.precise:
+            self._solve(0)
         elif not self.resting:
             self._drop(self.body.loose())
             self.resting = True
@@ -253,8 +259,14 @@ class Growth:
         self.ledger.broken(batch, self.factor)
         self._remove(batch, dropped=False)
         self._drop(self.body.slack())
+        # Within an avalanche it is enough to tell overloaded bonds from others.
+        rough = self.programme.control == "fixed"
+        self._solve(len(batch), max(_ROUGH, self.body.tolerance) if rough else None)
+
+    def _solve(self, broken: int, tolerance: float | None = None) -> None:
+        """Equilibrium after `broken` bonds broke, to a coarser `tolerance` if one is given."""
         try:
-            step = self.body.solve()
+            step = self.body.solve(tolerance)
         except (ConvergenceError, NegativeCurvatureError):
             # A part that moves freely may be behind it.
             particles = self.body.loose()
@@ -263,15 +275,16 @@ class Growth:
             if not len(particles):
                 raise
             self._drop(particles)
-            step = self.body.solve()
-        self.solves.append((len(batch), step.iterations, step.refreshed))
+            step = self.body.solve(tolerance)
+        self.precise = tolerance is None or tolerance <= self.body.tolerance
+        self.solves.append((broken, step.iterations, step.refreshed))
         self.ledger.solved(step, self.factor)
 
     def _remove(self, bonds: Indices, dropped: bool) -> None:
         step = len(self.solves)
         self.log += [(int(b), step, self.factor, dropped) for b in bonds]
         self.bonds.remove(bonds)
-        self.body.break_bonds(*np.divmod(bonds, self.bonds.lattice.count))
+        self.body.break_bonds(*self.bonds.ends(bonds))
 
     def _drop(self, particles: Indices) -> None:
         """Set aside particles that cannot carry load, and others that this leaves slack."""

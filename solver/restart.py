@@ -2,7 +2,7 @@
 
 What is saved is all that decides how a run goes on: which bonds are gone, the last solution (the
 next solve starts from it), and the preconditioner's coarse matrix with the bonds it was made for
-(another one would need other iterations and end in other last bits).
+(another one would need other iterations and end in other last bits), right-hand side included.
 """
 
 from __future__ import annotations
@@ -67,8 +67,9 @@ def save(run: Growth, path: str | os.PathLike[str], mark: str) -> None:
         "ledger": [ledger.work, ledger.dissipated, ledger.excess, ledger.deflection],
         "aside": body.aside,
         "x": body.x,
-        "counters": [body.iterations, body.base, int(body.worn), body.built],
-        "residual": [body.residual, body.seconds],
+        "rhs": np.zeros(0) if body.rhs is None else body.rhs,
+        "counters": [body.iterations, int(body.worn), body.built, int(run.precise)],
+        "residual": [body.residual, body.seconds, body.pace],
     }
     if isinstance(body.preconditioner, TwoLevel):
         coarse = body.preconditioner.coarse
@@ -92,7 +93,7 @@ def load(run: Growth, path: str | os.PathLike[str], mark: str) -> bool:
     found = _read(path, mark)
     if found is None:
         return False
-    body, ledger = run.body, run.ledger
+    body, bonds, ledger = run.body, run.bonds, run.ledger
     run.factor, run.target = float(found["factor"]), int(found["target"])
     run.resting, run.reason = bool(found["resting"]), str(found["reason"])
     run.log += [(int(b), int(s), float(f), bool(d)) for b, s, f, d in found["breaks"]]
@@ -101,12 +102,12 @@ def load(run: Growth, path: str | os.PathLike[str], mark: str) -> bool:
     ledger.work, ledger.dissipated, ledger.excess, ledger.deflection = found["ledger"].tolist()
     body.aside = found["aside"]
     gone = np.array([entry[0] for entry in run.log], dtype=np.int64)
-    iterations, base, worn, built = found["counters"].tolist()
-    body.iterations, body.base, body.worn = iterations, base, bool(worn)
-    body.residual, body.seconds = found["residual"].tolist()
+    iterations, worn, built, precise = found["counters"].tolist()
+    body.iterations, body.worn, run.precise = iterations, bool(worn), bool(precise)
+    body.residual, body.seconds, body.pace = found["residual"].tolist()
     if "coarse_data" in found:
         # The preconditioner belongs to the bonds there were when it was built.
-        body.break_bonds(*np.divmod(gone[:built], body.start.lattice.count))
+        body.break_bonds(*bonds.ends(gone[:built]))
         operator: BondOperator = body.positive()
         parts = (found["coarse_data"], found["coarse_indices"], found["coarse_indptr"])
         coarse = sparse.csc_array(parts, shape=(len(parts[2]) - 1,) * 2)
@@ -115,9 +116,10 @@ def load(run: Growth, path: str | os.PathLike[str], mark: str) -> bool:
         gone_later = gone[built:]
     else:
         gone_later = gone
-    body.break_bonds(*np.divmod(gone_later, body.start.lattice.count))
-    run.bonds.remove(gone)
+    body.break_bonds(*bonds.ends(gone_later))
+    bonds.remove(gone)
     body.x = found["x"]
+    body.rhs = found["rhs"] if len(found["rhs"]) else None
     return True
 
 
