@@ -92,7 +92,8 @@ class LinePlot:
     """A line plot as the paper draws them: one or more curves over one abscissa.
 
     `over_resolutions` asks the report to draw the first curve at every resolution that was run
-    (the paper's Fig. 9) instead of all the curves at the finest. `joined` draws lines between the
+    (the paper's Fig. 9) instead of all the curves at the finest, `over_methods` to draw it for
+    every method at its finest resolution, side by side. `joined` draws lines between the
     computed values, for curves that would be hard to tell apart by markers alone;
     `reference_label` says in the legend what the references are.
     """
@@ -102,6 +103,7 @@ class LinePlot:
     ylabel: str
     curves: tuple[Curve, ...]
     over_resolutions: bool = False
+    over_methods: bool = False
     joined: bool = False
     reference_label: str = "closed form"
 

@@ -50,8 +50,8 @@ def interaction_integral(
 ) -> tuple[float, float]:
     """K_I and K_II of a bond solution by the interaction integral over a ring of particles.
 
-    Stress is the tensor times the recovered gradient, whose families may be cut by the faces:
-    the stress summed over bonds would lack what those miss.
+    Gradients are differences between next neighbours that no crack separates, stress is the
+    tensor times them: sums over whole families would lack at the faces what those cut off.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def interaction_integral(
         leaves the body.
     """
     from references.analytic.interaction import intensities
-    from solver import ElasticTensor, recovery
+    from solver import ElasticTensor
 
     scene = solution.scene
     if not isinstance(scene.material, ElasticTensor):
@@ -85,7 +85,7 @@ def interaction_integral(
     if not 0.0 < inner < 1.0:
         raise ValueError("the ring's inner radius must be a fraction of the outer one")
     points, ring = _ring(solution, tip, inner * radius, radius)
-    gradient = recovery.displacement_gradient(solution)[ring]
+    gradient = local_gradient(solution)[ring]
     return intensities(
         scene.material.voigt,
         points[ring],
@@ -168,6 +168,45 @@ def fit_series(
     if -1 in pairs:
         shift = float(-2.0 * size * (pairs[-1] @ pairs[1]) / (pairs[1] @ pairs[1]))
     return TipSeries(float(k[0]), float(k[1]), shift, float(misfit))
+
+
+def local_gradient(solution: Solution) -> Array:
+    """∂u_i/∂x_j from neighbours within two cells, (N, 2, 2).
+
+    Central differences, one-sided ones of second order beside a face or an edge; NaN where a
+    particle has no intact bond along an axis.
+    """
+    gradient = np.empty((solution.discretisation.lattice.count, 2, 2))
+    for axis, unit in enumerate(((1, 0), (0, 1))):
+        ahead, far_ahead = (_step(solution, unit, k) for k in (1, 2))
+        behind, far_behind = (_step(solution, unit, -k) for k in (1, 2))
+        choices = (
+            0.5 * (ahead - behind),
+            2.0 * ahead - 0.5 * far_ahead,
+            0.5 * far_behind - 2.0 * behind,
+            ahead,
+            -behind,
+        )
+        slope = choices[0]
+        for other in choices[1:]:
+            slope = np.where(np.isnan(slope), other, slope)
+        gradient[:, :, axis] = slope.T / solution.spacing
+    return gradient
+
+
+def _step(solution: Solution, unit: tuple[int, int], cells: int) -> Array:
+    """u there less u here, (2, N), NaN where that bond is missing, cut or broken."""
+    parts = solution.discretisation
+    offsets = parts.family.offsets
+    found = np.flatnonzero(np.all(offsets == np.multiply(unit, cells), axis=1))
+    values = solution.displacement.T
+    if not len(found):
+        return np.full_like(values, np.nan)
+    rows, columns = parts.lattice.cells
+    there = parts.lattice.to_grid(np.nan_to_num(values, nan=0.0))
+    difference = there[:, rows + cells * unit[1], columns + cells * unit[0]] - values
+    difference[:, parts.bonds.factor(int(found[0])) == 0.0] = np.nan
+    return np.asarray(difference)
 
 
 def _ring(

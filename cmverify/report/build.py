@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cmverify import precision
-from cmverify.case import Case, Measurement, nothing_to_compile
+from cmverify.case import Case, LinePlot, Measurement, nothing_to_compile
 from cmverify.results import write_text
 from cmverify.summary import CaseResult, Row, RunInfo, all_passed, table
 
@@ -181,11 +181,26 @@ def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture
         pictures.append(Picture(f"field-{key}", "png", content, caption, alt, wide=True))
     for index, (line, series) in enumerate(figures.lines_of(featured), 1):
         title = mathtext(line.title)
-        caption = f"{title}. {_capital(where)}." if not line.over_resolutions else f"{title}."
-        alt = f"Line plot: {title}; markers computed, line closed form."
-        content = _render(figures.line_plot(line, series, case.length), "svg")
+        caption = f"{title}. {_capital(where)}."
+        if line.over_methods:
+            caption = f"{title}. Every method at its finest spacing."
+        elif line.over_resolutions:
+            caption = f"{title}."
+        alt = f"Line plot: {title}; markers computed, line {line.reference_label}."
+        beside = _by_methods(result, index - 1) if line.over_methods else None
+        content = _render(figures.line_plot(line, series, case.length, beside), "svg")
         pictures.append(Picture(f"line-{index}", "svg", content, caption, alt))
     return pictures
+
+
+def _by_methods(result: CaseResult, index: int) -> dict[str, LinePlot]:
+    """One line plot of every method that draws it, at its finest resolution."""
+    found = {}
+    for method in result.outcomes:
+        finest = result.finest(method)
+        if finest and index < len(finest[1].lines):
+            found[method] = finest[1].lines[index]
+    return found
 
 
 def _comparison(result: CaseResult, points: list[precision.Point]) -> list[dict[str, Any]]:

@@ -74,7 +74,12 @@ def _power(size: float) -> int:
     return int(np.floor(np.log10(size)))
 
 
-def line_plot(line: LinePlot, series: Mapping[int, LinePlot], length: str = "a") -> Figure:
+def line_plot(
+    line: LinePlot,
+    series: Mapping[int, LinePlot],
+    length: str = "a",
+    methods: Mapping[str, LinePlot] | None = None,
+) -> Figure:
     """Markers for the computed values, a black line for the reference.
 
     Parameters
@@ -83,11 +88,18 @@ def line_plot(line: LinePlot, series: Mapping[int, LinePlot], length: str = "a")
         The finest.
     series : mapping
         The same plot at every resolution, for those that want them all.
+    methods : mapping, optional
+        The same plot by every method, for those that want these.
     """
     with matplotlib.rc_context(style.RC):
         figure = Figure(figsize=NARROW)
         axis = figure.subplots()
-        if line.over_resolutions:
+        looks = [style.of_index(i) for i in range(max(len(line.curves), len(series)))]
+        if line.over_methods and methods:
+            curves = [(name, plot.curves[0]) for name, plot in methods.items()]
+            drawn = [line.curves[0]]
+            looks = [style.marker_of_method(name, i) for i, name in enumerate(methods)]
+        elif line.over_resolutions:
             curves = [(f"Δx = {length}/{n}", p.curves[0]) for n, p in sorted(series.items())]
             drawn = [line.curves[0]]
         else:
@@ -99,7 +111,7 @@ def line_plot(line: LinePlot, series: Mapping[int, LinePlot], length: str = "a")
             axis.plot(x, curve.reference, "k-", linewidth=1.1, label=label, zorder=2)
         for index, (label, curve) in enumerate(curves):
             shown = markers(curve.abscissa, curve.computed, 60 if line.joined else 30)
-            look = style.of_index(index)
+            look = looks[index]
             axis.plot(
                 curve.abscissa[shown], curve.computed[shown], zorder=3,
                 linestyle="-" if line.joined else "none", linewidth=0.9,

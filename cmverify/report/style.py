@@ -16,6 +16,12 @@ _KNOWN = {
     "bond/lattice": (BLUE, "o", 9.0),
     "bond/positive": (ORANGE, "s", 6.0),
     "bond/continuum": (GREY, "D", 3.5),
+    # Surface treatments.
+    "bond/extrapolated": (BLUE, "o", 7.0),
+    "bond/volume": (ORANGE, "s", 6.0),
+    "bond/none": (GREY, "D", 5.0),
+    "bond/lattice extrapolated": (YELLOW, "P", 7.0),
+    "bond/lattice none": ("#303030", "X", 6.0),
     "fem/P1": (GREEN, "^", 6.0),
     "fem/P2": (PURPLE, "v", 6.0),
     "fem/P2 graded": (SKY, ">", 6.0),
@@ -66,6 +72,12 @@ def of_method(name: str, index: int = 0) -> dict[str, Any]:
         "markerfacecolor": "white" if fem else color,
         "markeredgewidth": 1.4,
     }
+
+
+def marker_of_method(name: str, index: int = 0) -> dict[str, Any]:
+    """Colour and marker of a method whose computed values stand beside a reference's line."""
+    look = of_method(name, index)
+    return {"color": look["color"], "marker": look["marker"]}
 
 
 def of_index(index: int) -> dict[str, Any]:

@@ -119,6 +119,17 @@ def test_crack_tip_sees_one_percent_of_the_reference(case, mode):
     assert verdict_of(*args, "order") == [False]
 
 
+@pytest.mark.parametrize("kind", ["K", "K by series"])
+def test_intensities_see_one_percent_of_the_reference(kind):
+    def run(scale):
+        problem = crack_tip.Problem(1.0, 0.0, scale=scale)
+        return lambda n: crack_tip.bond(problem, "lattice", n)
+
+    case = crack_tip.CASES[0]
+    assert verdict_of(case, "bond/lattice", run(1.0), (30,), kind, "bound") == [True]
+    assert verdict_of(case, "bond/lattice", run(1.01), (30,), kind, "bound") == [False]
+
+
 def test_stress_ahead_sees_five_percent():
     """The bound is 5 %: the deviation is measured rightly if a factor of 1.06 breaks it."""
     case = crack_tip.CASES[0]

@@ -101,3 +101,21 @@ def test_markers_follow_the_drawn_curve():
     assert np.diff(shown).min() == 1  # every particle where it is steep
     assert 10 <= len(shown) <= 20
     assert list(figures.markers(x[:5], x[:5])) == [0, 1, 2, 3, 4]
+
+
+def test_methods_stand_beside_each_other():
+    """One reference line and the first curve of every method, each in its own colour."""
+    from cmverify.case import Curve, LinePlot
+
+    x = np.linspace(0.0, 1.0, 5)
+
+    def plot(shift):
+        curve = Curve("f", x, x + shift, x)
+        return LinePlot("f", "x", "f", (curve,), over_methods=True, reference_label="truth")
+
+    methods = {"bond/none": plot(0.2), "bond/volume": plot(0.1), "bond/extrapolated": plot(0.0)}
+    line = methods["bond/extrapolated"]
+    (axis,) = figures.line_plot(line, {10: line}, methods=methods).axes
+    assert axis.get_legend_handles_labels()[1] == ["truth", *methods]
+    np.testing.assert_allclose(axis.lines[1].get_ydata(), x + 0.2)
+    assert len({tuple(drawn.get_color()) for drawn in axis.lines}) == 4
