@@ -38,7 +38,9 @@ LOADS = {
     "body_force": {"value", "where"},
     "couple": {"value", "where"},
     "source": {"value", "where"},
-    "traction": {"value", "start", "end", "cells"},
+    "traction": {"value", "start", "end"},
+    "stress": {"value", "where"},
+    "flux": {"value", "where"},
 }
 SECTIONS = {"title", "discretisation", "region", "material", "support", "load", "crack", "solve"}
 
@@ -267,7 +269,7 @@ def _load(source: _Source, section: str, table: Mapping[str, Any]) -> Load:
     value = _formula(source, section, "value", _need(source, section, table, "value"))
     if kind == "traction":
         ends = [tuple(_need(source, section, table, key)) for key in ("start", "end")]
-        return Load.traction(value, ends[0], ends[1], table.get("cells", 1.0))
+        return Load.traction(value, ends[0], ends[1])
     where = table.get("where")
     selected = _formula(source, section, "where", where) if where is not None else None
     load: Load = getattr(Load, kind)(value, where=selected)

@@ -15,10 +15,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
+from scipy.spatial import KDTree
 
+from .ended import EndedBonds
 from .errors import SceneError
 from .family import Family
 from .lattice import Lattice
+from .outline import Outline
 from .regions import Crack
 from .surface import Surface, full_volume, volume_factor
 
@@ -68,7 +71,7 @@ class Bonds:
     lattice : Lattice
     family : Family
     cracks : sequence of Crack
-    surface : {"none", "volume"}
+    surface : {"none", "volume", "extrapolated"}
     prescribed : ndarray of bool, shape (N,)
         Particles that are wholly prescribed: the body's edge is no surface for them.
     broken : ndarray of bool, shape (family size / 2, N), optional
@@ -132,6 +135,10 @@ class Bonds:
             factors[:, np.searchsorted(self.special, broken_at)] *= ~broken_there
         #: Factor of each bond of a special particle, shape (family size, special).
         self.factors: Array = factors
+        #: Bonds that end at the surface, if the treatment has any.
+        self.ended: EndedBonds | None = None
+        if surface == "extrapolated":
+            self.ended = self._end(cracks, cut_at, cut, free, broken is None)
 
     def breaking(self, offsets: Indices, origins: Indices) -> Bonds:
         """These bonds with some more of them broken; what has not changed is shared.
@@ -187,6 +194,32 @@ class Bonds:
         dx, dy = self.family.offsets.T
         there = rows[particles] + dy[:, None], columns[particles] + dx[:, None]
         return ~lattice.mask[there] & ~beyond[there]
+
+    def _end(
+        self, cracks: Sequence[Crack], cut_at: Indices, cut: Mask, free: Mask, whole: bool
+    ) -> EndedBonds | None:
+        """The bonds that end at a surface which a particle with a free unknown feels.
+
+        `whole` says that no bond is broken: where some are, cracks may be growing.
+        """
+        lattice, family = self.lattice, self.family
+        particles = np.union1d(self.short, cut_at)
+        if not free[particles].any():
+            return None
+        lost = ~self.exist(particles)
+        lost[:, np.searchsorted(particles, cut_at)] |= cut
+        outline = Outline.of(lattice.region, cracks, lattice.spacing, joined=whole)
+        free = free[particles]
+        ended = EndedBonds.of(lattice, family, outline, particles[free], lost[:, free])
+        if free.all():
+            return ended.with_chords(lattice, family)
+        # Prescribed particles hold the surface where free ones feel it.
+        reach = 2 * float(family.length.max())
+        tree = KDTree(lattice.points[particles[free]])
+        distance, _ = tree.query(lattice.points[particles], distance_upper_bound=reach)
+        near = ~free & np.isfinite(distance)
+        others = EndedBonds.of(lattice, family, outline, particles[near], lost[:, near])
+        return ended.joined(others).with_chords(lattice, family)
 
     def _both_ends(self, broken: Mask | None) -> tuple[Indices, Mask]:
         """Particles with broken bonds and which, from the half offsets of one end."""
@@ -273,4 +306,5 @@ class Bonds:
     @property
     def nbytes(self) -> int:
         """Memory of everything stored for single bonds."""
-        return int(self.factors.nbytes + self.special.nbytes + self.short.nbytes)
+        ended = 0 if self.ended is None else self.ended.nbytes
+        return int(self.factors.nbytes + self.special.nbytes + self.short.nbytes + ended)

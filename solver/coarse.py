@@ -89,6 +89,7 @@ class Hats:
         self.count = len(keys)
         particle = np.repeat(np.arange(count), 4).reshape(count, 4)[used]
         prolongation = sparse.csr_array((weight[used], (particle, hat)), shape=(count, self.count))
+        self.prolongation = prolongation
         self.prolong = _Rows.of(prolongation)
         self.restrict = _Rows.of(prolongation.T.tocsr())
         self.node, self.piece = keys // _PIECES, keys % _PIECES
@@ -205,6 +206,12 @@ class Hats:
                 np.concatenate([j, i[mirrored], old_j]),
             )
         return sparse.coo_array((data, (i, j)), shape=(size, size)).tocsc()
+
+    def surface(self) -> sparse.csr_array | None:
+        """Pᵀ S P of what the surface's nodes add, which reaches too far to be probed."""
+        if self.operator.surface is None:
+            return None
+        return self.operator.surface.condensed(self.operator.surface_basis(self.prolongation))
 
     def _stale(self, changed: Indices | None) -> NDArray[np.bool_]:
         """Hats whose image under K may differ because of particles with changed bonds."""

@@ -57,6 +57,10 @@ class RotationBlock(LinearOperator):
             operator.bonds.factors,
             out,
         )
+        if operator.surface is not None:
+            turned = np.zeros((3, len(theta)))
+            turned[2] = given
+            out[0] -= operator.nodes_reaction(turned)[2]
         return out[0] if fixed is None else np.where(fixed, theta, out[0])
 
     def _adjoint(self) -> RotationBlock:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import shapely
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import SceneError
 from .lattice import Lattice
+from .outline import Outline
 from .regions import Point, Region
 
 Array = NDArray[np.float64]
@@ -141,18 +141,22 @@ class Support:
 
 @dataclass(frozen=True)
 class Load:
-    """Something that acts on particles, per unit volume.
+    """Something that acts on the body, per unit volume or on its edges.
 
     Attributes
     ----------
-    kind : {"force", "couple", "source"}
-        Body force (N/m³, two components), body couple (N m/m³) or heat source (W/m³).
-    density : callable
-        Lattice → (mask, densities of shape (selected, components)).
+    kind : {"force", "couple", "source", "traction", "inflow"}
+        Body force (N/m³, two components), body couple (N m/m³), heat source (W/m³); on edges
+        traction (Pa, two components) and inflow of heat (W/m²).
+    density : callable, optional
+        Of a load in the body: lattice → (mask, densities of shape (selected, components)).
+    edge : callable, optional
+        Of a load on edges: outline → quadrature.
     """
 
     kind: str
-    density: Callable[[Lattice], tuple[Mask, Array]]
+    density: Callable[[Lattice], tuple[Mask, Array]] | None = None
+    edge: Callable[[Outline], Quadrature] | None = None
 
     @classmethod
     def _body(cls, kind: str, value: Value, components: int, where: Where | None) -> Load:
@@ -181,23 +185,148 @@ class Load:
         return cls._body("source", source, 1, where)
 
     @classmethod
-    def traction(cls, traction: Value, start: Point, end: Point, cells: float = 1.0) -> Load:
-        """Traction (t1, t2), Pa, on the straight edge from `start` to `end`, as a layer of force.
+    def traction(cls, traction: Value, start: Point, end: Point) -> Load:
+        """Traction (t1, t2), Pa, on the straight part of the body's edge from `start` to `end`."""
 
-        The force is spread over the particles within `cells` spacings of the edge and scaled so
-        that its resultant is that of a uniform traction, whatever the lattice does at the edge.
+        def edge(outline: Outline) -> Quadrature:
+            rule = Quadrature.between(outline, np.array(start), np.array(end))
+            if not len(rule):
+                raise SceneError(f"no edge of the body runs along {start}–{end}")
+            return rule.carrying(evaluate(traction, rule.points, 2, "a traction"))
+
+        return cls("traction", edge=edge)
+
+    @classmethod
+    def stress(cls, stress: Value, where: Where | None = None) -> Load:
+        """The traction σ·n of a stress (σ11, σ22, σ12), Pa, on the body's outer edges and holes.
+
+        Parameters
+        ----------
+        stress : triple, or function of (x, y) → (..., 3)
+        where : Region or callable, optional
+            The part of the edge that carries it; all of it by default. Faces of cracks never do.
         """
-        edge = shapely.LineString([start, end])
 
-        def density(lattice: Lattice) -> tuple[Mask, Array]:
-            depth = shapely.distance(edge, shapely.points(lattice.points))
-            along = np.array(end) - np.array(start)
-            position = (lattice.points - np.array(start)) @ along / (along @ along)
-            mask = depth <= cells * lattice.spacing * (1 + 1e-9)
-            mask &= (position >= 0) & (position <= 1)
-            if not mask.any():
-                raise SceneError(f"no particle within {cells} cells of the edge {start}–{end}")
-            share = edge.length / (mask.sum() * lattice.spacing**2)
-            return mask, share * evaluate(traction, lattice.points[mask], 2, "a traction")
+        def edge(outline: Outline) -> Quadrature:
+            rule = Quadrature.over(outline, where)
+            s11, s22, s12 = evaluate(stress, rule.points, 3, "a stress at the edge").T
+            n1, n2 = rule.normals.T
+            return rule.carrying(np.column_stack([s11 * n1 + s12 * n2, s12 * n1 + s22 * n2]))
 
-        return cls("force", density)
+        return cls("traction", edge=edge)
+
+    @classmethod
+    def flux(cls, flux: Value, where: Where | None = None) -> Load:
+        """What a flux (q1, q2), W/m², carries into the body through its edges: −q·n."""
+
+        def edge(outline: Outline) -> Quadrature:
+            rule = Quadrature.over(outline, where)
+            q = evaluate(flux, rule.points, 2, "a flux at the edge")
+            return rule.carrying(-np.einsum("ki,ki->k", q, rule.normals)[:, None])
+
+        return cls("inflow", edge=edge)
+
+
+# Quadrature points on an edge of the outline: closer than the particles, which may have to carry
+# each its own share.
+_POINTS = 24
+# An edge belongs to a straight line if both its ends lie within this share of its length.
+_ALONG = 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class Quadrature:
+    """Points on the body's edges with weights, and what acts there.
+
+    Attributes
+    ----------
+    outline : Outline
+    edge : ndarray of int, shape (k,)
+    position : ndarray, shape (k,)
+        Along the edge, 0 to 1.
+    weight : ndarray, shape (k,), m
+    density : ndarray, shape (k, components)
+        Per length (and unit thickness).
+    """
+
+    outline: Outline
+    edge: NDArray[np.int64]
+    position: Array
+    weight: Array
+    density: Array
+
+    @classmethod
+    def over(cls, outline: Outline, where: Where | None = None) -> Quadrature:
+        """The region's edges, or the part that `where` selects.
+
+        Raises
+        ------
+        SceneError
+            If nothing is selected.
+        """
+        edge = np.nonzero(outline.face == 0)[0]
+        rule = cls._rule(outline, edge, np.zeros(len(edge)), np.ones(len(edge)))
+        if where is None:
+            return rule
+        x, y = rule.points.T
+        inside = where.contains(x, y) if isinstance(where, Region) else np.asarray(where(x, y))
+        if inside.dtype != bool or inside.shape != x.shape:
+            raise SceneError("a selection must return one boolean a point")
+        if not inside.any():
+            raise SceneError("a load on the edge acts nowhere: no point of the edge is selected")
+        return rule._pick(inside)
+
+    @classmethod
+    def between(cls, outline: Outline, start: Array, end: Array) -> Quadrature:
+        """The edges, or parts of them, along a straight line."""
+        first, last = (outline.nodes[outline.edges[:, k]] for k in (0, 1))
+        length = float(np.hypot(*(end - start)))
+        along = (end - start) / length
+        across = np.array([-along[1], along[0]])
+        near = (outline.face == 0) & (np.abs(outline.outward @ along) < 1e-6)
+        for point in (first, last):
+            near &= np.abs((point - start) @ across) < _ALONG * outline.length
+        edge = np.nonzero(near)[0]
+        a, b = ((point[edge] - start) @ along for point in (first, last))
+        # Edges may run either way.
+        ends = [np.clip((x - a) / (b - a), 0.0, 1.0) for x in (0.0, length)]
+        low, high = np.minimum(*ends), np.maximum(*ends)
+        kept = high > low
+        return cls._rule(outline, edge[kept], low[kept], high[kept])
+
+    @classmethod
+    def _rule(
+        cls, outline: Outline, edge: NDArray[np.int64], low: Array, high: Array
+    ) -> Quadrature:
+        """Midpoints of equal parts of every edge between two positions."""
+        middle = (np.arange(_POINTS) + 0.5) / _POINTS
+        position = (low[:, None] + (high - low)[:, None] * middle).ravel()
+        weight = np.repeat((high - low) * outline.length[edge] / _POINTS, _POINTS)
+        return cls(outline, np.repeat(edge, _POINTS), position, weight, np.zeros((len(weight), 0)))
+
+    def _pick(self, chosen: Mask) -> Quadrature:
+        parts = (self.position, self.weight, self.density)
+        return Quadrature(self.outline, self.edge[chosen], *(part[chosen] for part in parts))
+
+    def __len__(self) -> int:
+        return len(self.edge)
+
+    @property
+    def points(self) -> Array:
+        """Shape (k, 2), m."""
+        first, last = (self.outline.nodes[self.outline.edges[self.edge, k]] for k in (0, 1))
+        return first + self.position[:, None] * (last - first)
+
+    @property
+    def normals(self) -> Array:
+        """Outward, shape (k, 2)."""
+        return self.outline.outward[self.edge]
+
+    def carrying(self, density: Array) -> Quadrature:
+        """The same points with a density."""
+        return replace(self, density=density)
+
+    @property
+    def force(self) -> Array:
+        """What acts at each point, shape (k, components)."""
+        return self.weight[:, None] * self.density

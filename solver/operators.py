@@ -17,6 +17,7 @@ from scipy.sparse.linalg import LinearOperator
 
 from . import kernels
 from .bonds import Bonds
+from .ended import SurfaceStiffness
 from .micromoduli import ConductiveModuli, ElasticModuli, Moduli
 
 Array = NDArray[np.float64]
@@ -24,6 +25,8 @@ Mask = NDArray[np.bool_]
 
 # Kinds of particles as the kernels know them.
 _BULK, _TRUNCATED, _SPECIAL = 0, 1, 2
+# Own stiffness, relative to the bulk's, beyond which a particle is tied to the surface's nodes.
+STIFF = 1.0
 
 
 def offset_blocks(bonds: Bonds, moduli: Moduli) -> Array:
@@ -90,6 +93,38 @@ class BondOperator(LinearOperator):
         self.bulk = self._diagonal_sums(np.ones((bonds.family.size, 1)))[:, 0]
         #: Runs of particles of one kind, as the kernels read them.
         self.segments, self.diagonal = self._layout()
+        #: Stiffness of the bonds that end at the surface, if there are any.
+        self.surface: SurfaceStiffness | None = None
+        if bonds.ended is not None:
+            self.surface = bonds.ended.stiffness(bonds.family, moduli, self.components)
+            self._add_surface()
+
+    def _add_surface(self) -> None:
+        """Put the particles' part of the ended bonds into the diagonal blocks."""
+        surface = self.surface
+        assert surface is not None
+        position = np.full(self.bonds.lattice.count, -1)
+        position[self.active] = np.arange(len(self.active))
+        at = position[surface.particles]
+        #: Active particles with ended bonds, and which of the surface's particles they are.
+        self.at_surface: NDArray[np.int64] = at[at >= 0]
+        self._on_surface = np.nonzero(at >= 0)[0]
+        column = np.full(len(self.active), -1)
+        column[self.own] = np.arange(len(self.own))
+        self.diagonal[:, column[self.at_surface]] += surface.own[:, self._on_surface]
+
+    def add_at_surface(self, out: Array, values: Array) -> None:
+        """Add values of the surface's particles, (components, p), to a field of the active ones."""
+        out[:, self.at_surface] += values[:, self._on_surface]
+
+    def nodes_reaction(self, values: Array) -> Array:
+        """What the surface's nodes do to the active particles, both (components, active)."""
+        assert self.surface is not None
+        given = np.zeros((self.components, len(self.surface.particles)))
+        given[:, self._on_surface] = values[:, self.at_surface]
+        out = np.zeros_like(values)
+        self.add_at_surface(out, self.surface.reaction(given))
+        return out
 
     def _layout(self) -> tuple[NDArray[np.uint64], Array]:
         """Segments of the active particles and the diagonal blocks that differ from the bulk's."""
@@ -153,7 +188,8 @@ class BondOperator(LinearOperator):
 
         With `masked`, prescribed components of the values and of the result count as zero
         (instead of the identity rows of `matvec`). With `segments` (from `windows`,
-        after `clear`) only their particles are read and written in `out`.
+        after `clear`) only their particles are read and written in `out`, and the reaction of
+        the surface's nodes is left out.
         """
         segments = self.segments if segments is None else segments
         values = np.ascontiguousarray(values, dtype=np.float64)
@@ -161,6 +197,8 @@ class BondOperator(LinearOperator):
         # Only cells of active particles are ever written: the others stay zero.
         kernels.scatter(segments, masked_values, self._grid)
         out = self.apply_grid(self._grid, segments, out)
+        if self.surface is not None and segments is self.segments:
+            out += self.nodes_reaction(masked_values)
         if self.fixed is not None:
             out[self.fixed] = 0.0 if masked else self.identity_scale * values[self.fixed]
         return out
@@ -225,6 +263,9 @@ class BondOperator(LinearOperator):
         # Parts set aside hold NaN and no bonds.
         grid[:, rows * self.bonds.lattice.shape[1] + columns] = np.nan_to_num(prescribed)
         out = self.apply_grid(grid)
+        if self.surface is not None:
+            given = np.nan_to_num(prescribed[:, self.surface.particles])
+            self.add_at_surface(out, self.surface.reaction(given))
         if self.fixed is not None:
             out[self.fixed] = 0.0
         return out
@@ -246,6 +287,25 @@ class BondOperator(LinearOperator):
             return self
         positive = ElasticModuli(np.abs(self.moduli.normal), np.abs(self.moduli.shear))
         return self.with_moduli(positive)
+
+    def surface_basis(self, basis: sparse.csr_array | None = None) -> sparse.csr_array:
+        """Values of the surface's particles for each unknown, or each column of `basis`.
+
+        `basis` gives one component of the active particles, shape (active, columns), and serves
+        all components alike.
+        """
+        assert self.surface is not None
+        size = (len(self.surface.particles), len(self.active))
+        pick = sparse.csr_array(
+            (np.ones(len(self.at_surface)), (self._on_surface, self.at_surface)), shape=size
+        )
+        parts = []
+        for component in range(self.components):
+            part = pick
+            if self.fixed is not None:
+                part = part @ sparse.diags_array((~self.fixed[component]).astype(np.float64))
+            parts.append(part if basis is None else part @ basis)
+        return sparse.csr_array(sparse.block_diag(parts, format="csr"))
 
     # ---- structure ----------------------------------------------------------------------
 
@@ -276,11 +336,25 @@ class BondOperator(LinearOperator):
     def own_blocks(self) -> Array:
         """Their diagonal blocks, shape (len(own), components, components)."""
         blocks = self._as_blocks(self.diagonal)
+        if self.surface is not None:
+            self._relieve(blocks)
         if self.fixed is not None:
             where, component = np.nonzero(self.fixed.T[self.own])
             blocks[where, component, :] = blocks[where, :, component] = 0.0
             blocks[where, component, component] = self.identity_scale
         return blocks
+
+    def _relieve(self, blocks: Array) -> None:
+        """Let the surface's nodes give way to the particles that bonds tie to them stiffly.
+
+        Exact for those; for the others what is left out is small and makes the block stiffer.
+        """
+        assert self.surface is not None
+        own = np.full(len(self.active), -1)
+        own[self.own] = np.arange(len(self.own))
+        at = own[self.at_surface]
+        stiff = np.abs(np.einsum("pii->p", blocks[at])) > STIFF * np.abs(np.trace(self.bulk_block))
+        blocks[at[stiff]] += self.surface.relief(self._on_surface[stiff])
 
     def _as_blocks(self, entries: Array) -> Array:
         c = self.components
@@ -302,7 +376,8 @@ class BondOperator(LinearOperator):
     def nbytes(self) -> int:
         """Memory of what a product reads besides the fields."""
         arrays = (self.segments, self.steps, self.half_blocks, self.bulk, self.diagonal)
-        return sum(a.nbytes for a in arrays) + self.bonds.nbytes
+        surface = 0 if self.surface is None else self.surface.nbytes
+        return sum(a.nbytes for a in arrays) + self.bonds.nbytes + surface
 
     def to_csr(self) -> sparse.csr_array:
         """The same operator as a sparse matrix, for small checks and factorisations."""
@@ -326,7 +401,9 @@ class BondOperator(LinearOperator):
                     values.append(sign * factor * self.blocks[o, layout[a][b]])
                     starts.append((a * count + here).astype(np.int32))
                     ends.append((b * count + neighbour[here]).astype(np.int32))
-        diagonal = self.block_diagonal
+        # As the kernels have them: the nodes' part follows as a whole.
+        diagonal = np.tile(self.bulk_block, (count, 1, 1))
+        diagonal[self.own] = self._as_blocks(self.diagonal)
         for a in range(c):
             for b in range(c):
                 values.append(diagonal[:, a, b])
@@ -336,6 +413,8 @@ class BondOperator(LinearOperator):
             (np.concatenate(values), (np.concatenate(starts), np.concatenate(ends))),
             shape=self.shape,
         ).tocsr()
+        if self.surface is not None:
+            matrix = sparse.csr_array(matrix + self.surface.condensed(self.surface_basis()))
         if self.fixed is not None:
             free = sparse.diags_array((~self.fixed).ravel().astype(np.float64))
             identity = sparse.diags_array(self.fixed.ravel() * self.identity_scale)

@@ -138,11 +138,14 @@ class TwoLevel(LinearOperator):
         if previous is not None:
             known = previous.hats, previous.coarse
             changed = changed_particles(previous.operator, operator)
-        #: Galerkin matrix of the hats.
+        #: Galerkin matrix of the hats without the surface's nodes.
         self.coarse: sparse.csc_array = (
             self.hats.galerkin(known, changed) if coarse is None else coarse
         )
-        self._solve = _factorise(self.coarse, regularisation)
+        #: Galerkin matrix of the surface's nodes, which the bonds do not change.
+        self.surface = self.hats.surface()
+        whole = self.coarse if self.surface is None else (self.coarse + self.surface).tocsc()
+        self._solve = _factorise(whole, regularisation)
         self.largest = self._largest_eigenvalue()
         #: Wall time of the set-up, s.
         self.seconds = perf_counter() - begun
@@ -161,8 +164,11 @@ class TwoLevel(LinearOperator):
         )
 
     def _largest_eigenvalue(self) -> float:
-        """Largest λ(D⁻¹K): a rigorous bound without negative moduli, else a safe estimate."""
-        if self.operator.moduli.non_negative:
+        """Largest λ(D⁻¹K): a rigorous bound without negative moduli, else a safe estimate.
+
+        The bound does not hold where blocks give way to the surface's nodes.
+        """
+        if self.operator.moduli.non_negative and self.operator.surface is None:
             return 2.0
         # A deterministic start with components along everything.
         vector = np.cos(1.7 * np.arange(self.shape[0]))

@@ -1,7 +1,8 @@
 """Fields recovered from a solution: stress, flux, energy, macroscopic rotation.
 
 All are sums over bonds, done one offset at a time for the whole body. Near an edge (a prescribed
-layer included) families lack bonds, and stress and flux there are those of the bonds that exist.
+layer included) families lack bonds, and stress and flux there are those of the bonds that exist;
+with the surface treatment ``extrapolated`` bonds that end at the surface stand in for them.
 """
 
 from __future__ import annotations
@@ -56,6 +57,42 @@ def _pairs(solution: Solution) -> Iterator[_Pair]:
         )
 
 
+@dataclass(frozen=True)
+class _Ends:
+    """Bonds that end at the surface: strains and geometry, one value a bond."""
+
+    particle: NDArray[np.int64]
+    offset: NDArray[np.int64]
+    weight: Array
+    length: Array
+    difference: Array
+    strains: Array
+
+    def add(self, values: Array, result: Array) -> None:
+        """Add values (..., bonds) to their particles' in `result`, shape (..., N)."""
+        for into, what in zip(
+            result.reshape(-1, result.shape[-1]),
+            values.reshape(-1, len(self.particle)),
+            strict=True,
+        ):
+            into += np.bincount(self.particle, what, minlength=len(into))
+
+
+def _ends(solution: Solution) -> _Ends | None:
+    """The bonds that end at the surface, if the body has any."""
+    parts = solution.discretisation
+    ended, surface, family = parts.bonds.ended, parts.operator.surface, parts.family
+    nodal = parts.surface_values(solution.unknowns)
+    if ended is None or surface is None or nodal is None:
+        return None
+    strains, difference = surface.strains(
+        np.nan_to_num(solution.unknowns[:, surface.particles]),
+        nodal,
+    )
+    weight = family.weight[ended.offset] * family.cell
+    return _Ends(ended.particle, ended.offset, weight, ended.length, difference, strains)
+
+
 def _aside(solution: Solution, result: Array) -> Array:
     """`result` (N, ...) with NaN at the particles that were set aside."""
     result[np.isnan(solution.unknowns).any(axis=0)] = np.nan
@@ -96,7 +133,8 @@ def stress(solution: Solution, rule: Literal["plane", "family"] = "plane") -> Ar
         Of an elastic scene.
     rule : {"plane", "family"}
         ``plane``: Saint-Venant and Cauchy's definition (Eq. 83), force per area through the
-        section Δx of the particle. A bond counts by half where it starts or ends on the plane
+        section Δx of the particle. Bonds between particles only: beside a surface take
+        ``family``. A bond counts by half where it starts or ends on the plane
         (the mean of the planes just before and behind the centre) and where it passes exactly
         between two sections; without this the sum of a homogeneous strain comes out wrong.
         ``family``: ½ Σ f ⊗ ξ α Δv, the virial of the particle's own bonds.
@@ -119,6 +157,14 @@ def stress(solution: Solution, rule: Literal["plane", "family"] = "plane") -> Ar
         for pair in _pairs(solution):
             force = _force(pair, moduli, solution.spacing) * (0.5 * pair.weight * pair.length)
             result += force[:, None, :] * pair.normal[None, :, None]
+        if (ends := _ends(solution)) is not None:
+            o = ends.offset
+            axial, transverse = moduli.normal[o], moduli.shear[o]
+            force = family.normal[o].T * (axial * ends.strains[0])
+            if len(ends.strains) == 2:
+                force += family.tangent[o].T * (transverse * ends.strains[1])
+            force *= 0.5 * ends.weight * family.length[o]
+            ends.add(force[:, None] * family.normal[o].T[None], result)
     elif rule == "plane":
         rows, columns = lattice.cells
         for pair in _pairs(solution):
@@ -190,13 +236,20 @@ def flux(solution: Solution, rule: Literal["consistent", "hotter"] = "consistent
         flow = flow * pair.difference[0]
         share = np.where(pair.difference[0] > 0, 1.0, 0.0) if rule == "hotter" else 0.5
         result -= np.outer(pair.normal, share * flow)
+    if (ends := _ends(solution)) is not None:
+        o, slope = ends.offset, ends.strains[0]
+        part = np.where(slope > 0, 1.0, 0.0) if rule == "hotter" else 0.5
+        flow = part * ends.weight * moduli.conductivity[o] * slope
+        ends.add(-flow * solution.discretisation.family.normal[o].T, result)
     return _aside(solution, result.T)
 
 
 def strain_energy_density(solution: Solution) -> Array:
     """Macroelastic energy density W of each particle (Eq. 11), shape (N,), J/m³.
 
-    Each bond gives half its energy to either end. In conduction the macro-potential of Eq. 115.
+    Each bond gives half its energy to either end; one that ends at the surface as much as if it
+    were whole, so that a homogeneous strain has its density right up to the edge. In conduction
+    the macro-potential of Eq. 115.
     """
     moduli = solution.discretisation.moduli
     result = np.zeros(solution.discretisation.lattice.count)
@@ -208,6 +261,16 @@ def strain_energy_density(solution: Solution) -> Array:
             density = moduli.normal[pair.index] * s**2 + moduli.shear[pair.index] * gamma**2
             density = density * pair.length
         result += 0.25 * pair.weight * pair.factor * density
+    if (ends := _ends(solution)) is not None:
+        o = ends.offset
+        if isinstance(moduli, ConductiveModuli):
+            density = moduli.conductivity[o] * ends.strains[0] ** 2
+        else:
+            density = moduli.normal[o] * ends.strains[0] ** 2
+            if len(ends.strains) == 2:
+                density += moduli.shear[o] * ends.strains[1] ** 2
+            density *= solution.discretisation.family.length[o]
+        ends.add(0.25 * ends.weight * density, result)
     return _aside(solution, result)
 
 
@@ -224,6 +287,14 @@ def displacement_gradient(solution: Solution) -> Array:
         xi = pair.length * pair.normal
         moment += weight[:, None, None] * np.outer(xi, xi)
         slope += (weight * pair.difference[:2]).T[:, :, None] * xi
+    if (ends := _ends(solution)) is not None:
+        xi = ends.length * solution.discretisation.family.normal[ends.offset].T
+        ends.add(ends.weight * xi[:, None] * xi[None], moment := np.moveaxis(moment, 0, 2).copy())
+        ends.add(
+            ends.weight * ends.difference[:2, None] * xi[None],
+            slope := np.moveaxis(slope, 0, 2).copy(),
+        )
+        moment, slope = np.moveaxis(moment, 2, 0), np.moveaxis(slope, 2, 0)
     return _aside(solution, slope @ np.linalg.pinv(moment))
 
 

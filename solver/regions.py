@@ -15,6 +15,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from .errors import SceneError
+
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 
@@ -37,6 +39,20 @@ class Region(ABC):
     @abstractmethod
     def edge_distance(self, x: Array, y: Array) -> Array:
         """Distance (m) of each inside point to the nearest point of the edge."""
+
+    def outline(self, step: float) -> shapely.Geometry:
+        """The region as shapely polygons; chords of curves are about `step` (m) long.
+
+        Raises
+        ------
+        SceneError
+            If this kind of region has no outline: then only surface treatments that need none
+            can be used.
+        """
+        raise SceneError(
+            f"a {type(self).__name__} has no outline: surface='extrapolated' and loads on edges "
+            f"need one"
+        )
 
     def __sub__(self, hole: Region) -> Region:
         """This region without `hole`."""
@@ -61,6 +77,15 @@ class Disc(Region):
 
     def contains(self, x: Array, y: Array) -> NDArray[np.bool_]:
         return (x - self.centre[0]) ** 2 + (y - self.centre[1]) ** 2 <= self.radius**2
+
+    def outline(self, step: float) -> shapely.Geometry:
+        # A multiple of four keeps the lattice's symmetry.
+        count = max(24, 4 * int(np.ceil(0.5 * np.pi * self.radius / step - 1e-9)))
+        angle = 2 * np.pi * np.arange(count) / count
+        x, y = self.centre
+        return shapely.Polygon(
+            np.column_stack([x + self.radius * np.cos(angle), y + self.radius * np.sin(angle)])
+        )
 
     def edge_distance(self, x: Array, y: Array) -> Array:
         return np.abs(self.radius - np.hypot(x - self.centre[0], y - self.centre[1]))
@@ -99,6 +124,9 @@ class Polygon(Region):
         nudge = _EDGE * max(x1 - x0, y1 - y0)
         return shapely.contains_xy(self.shape, x + nudge, y + nudge)
 
+    def outline(self, step: float) -> shapely.Geometry:
+        return self.shape
+
     def edge_distance(self, x: Array, y: Array) -> Array:
         return shapely.distance(self.shape.exterior, shapely.points(x, y))
 
@@ -120,6 +148,9 @@ class Difference(Region):
 
     def contains(self, x: Array, y: Array) -> NDArray[np.bool_]:
         return self.body.contains(x, y) & ~self.hole.contains(x, y)
+
+    def outline(self, step: float) -> shapely.Geometry:
+        return shapely.difference(self.body.outline(step), self.hole.outline(step))
 
     def edge_distance(self, x: Array, y: Array) -> Array:
         return np.minimum(self.body.edge_distance(x, y), self.hole.edge_distance(x, y))

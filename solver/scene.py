@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 from . import mechanisms
 from .bonds import Bonds
-from .conditions import Load, Support, evaluate
+from .conditions import Load, Quadrature, Support, evaluate
 from .errors import MechanismError, SceneError
 from .family import AreaRule, Family
 from .influence import CONSTANT, Influence, influence
@@ -25,6 +26,7 @@ from .lattice import Lattice
 from .laws import AngularLaw
 from .micromoduli import Calibration, Moduli, calibrate
 from .operators import BondOperator
+from .outline import Outline
 from .regions import Crack, Region
 from .stability import Stability, require_admissible
 from .surface import Surface, check_surface
@@ -59,7 +61,7 @@ class Scene:
         See `solver.micromoduli.calibrate` for the default.
     influence : str or Influence
     area_rule : {"partial", "full", "exact"}
-    surface : {"volume", "none"}
+    surface : {"volume", "none", "extrapolated"}
     cracks : sequence of Crack
         Bonds that cross one are cut, and its faces are surfaces. A part that cracks leave on a
         single bond is not looked for; broken bonds (`broken`) are searched for such hinges.
@@ -121,7 +123,7 @@ class Scene:
             value = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, Real):
                 raise SceneError(f"{name} must be a number, not {value!r}")
-        wanted = {"force", "couple"} if self.elastic else {"source"}
+        wanted = {"force", "couple", "traction"} if self.elastic else {"source", "inflow"}
         for load in self.loads:
             if load.kind not in wanted:
                 body = "an elastic body" if self.elastic else "a conductive body"
@@ -166,6 +168,8 @@ class Discretisation:
         Prescribed values (rotations times the spacing), zero where free, NaN where set aside.
     load : ndarray, shape (components, N)
         Densities of force, couple over spacing, or source.
+    pull : ndarray, shape (components, surface nodes), optional
+        Loads of the surface's nodes, per volume of a particle.
     seconds : float
         Wall time that building all this took.
     """
@@ -180,6 +184,7 @@ class Discretisation:
     prescribed: Mask
     values: Array
     load: Array
+    pull: Array | None
     seconds: float
 
     @classmethod
@@ -195,6 +200,7 @@ class Discretisation:
             components = 2 if stability.sign == "central" else 3
         prescribed, values = _supports(scene, lattice, components)
         load = _loads(scene, lattice, components)
+        pulls = _edge_loads(scene, lattice)
         broken = scene.broken(lattice, family) if scene.broken else None
         held = np.logical_and.reduce(prescribed, axis=0)
         aside = np.zeros(lattice.count, dtype=bool)
@@ -222,6 +228,7 @@ class Discretisation:
             prescribed[:, loose] = True
             values[:, loose] = np.nan
             broken = mechanisms.without(bonds, broken, loose)
+        pull = _share_out(pulls, lattice, operator, load)
         seconds = perf_counter() - begun
         return cls(
             scene,
@@ -234,6 +241,7 @@ class Discretisation:
             prescribed,
             values,
             load,
+            pull,
             seconds,
         )
 
@@ -246,10 +254,19 @@ class Discretisation:
         """Load of the active unknowns less what the prescribed ones exert, flattened."""
         operator = self.operator
         rhs = self.load[:, operator.active] - operator.coupling(self.values)
+        if operator.surface is not None and self.pull is not None:
+            operator.add_at_surface(rhs, -operator.surface.pull(self.pull))
         if operator.fixed is not None:
             given = self.values[:, operator.active]
             rhs[operator.fixed] = operator.identity_scale * given[operator.fixed]
         return rhs.ravel()
+
+    def surface_values(self, unknowns: Array) -> Array | None:
+        """Values of the surface's nodes for a field of shape (components, N), if it has nodes."""
+        surface = self.operator.surface
+        if surface is None:
+            return None
+        return surface.nodal(np.nan_to_num(unknowns[:, surface.particles]), self.pull)
 
     def field(self, x: Array) -> Array:
         """Values of all unknowns, shape (components, N), from a vector of the active ones."""
@@ -285,6 +302,8 @@ def _supports(scene: Scene, lattice: Lattice, components: int) -> tuple[Mask, Ar
 def _loads(scene: Scene, lattice: Lattice, components: int) -> Array:
     load = np.zeros((components, lattice.count))
     for item in scene.loads:
+        if item.density is None:
+            continue
         mask, density = item.density(lattice)
         if item.kind == "couple":
             if components < 3:
@@ -296,3 +315,40 @@ def _loads(scene: Scene, lattice: Lattice, components: int) -> Array:
         else:
             load[: density.shape[1], mask] += density.T
     return load
+
+
+def _edge_loads(scene: Scene, lattice: Lattice) -> list[Quadrature]:
+    """Loads on the body's edges, evaluated."""
+    edges = [item.edge for item in scene.loads if item.edge is not None]
+    if not edges:
+        return []
+    outline = Outline.of(lattice.region, scene.cracks, lattice.spacing, scene.broken is None)
+    return [edge(outline) for edge in edges]
+
+
+def _share_out(
+    pulls: list[Quadrature], lattice: Lattice, operator: BondOperator, load: Array
+) -> Array | None:
+    """Give loads on edges to the surface's nodes, or to the nearest particles (into `load`).
+
+    Returns the nodes' loads, shape (components, nodes), or None if the surface has no nodes.
+    """
+    surface = operator.surface
+    nodal = None if surface is None else np.zeros((load.shape[0], len(surface.nodes)))
+    for rule in pulls:
+        force = rule.force.T / lattice.spacing**2
+        ends = rule.outline.edges[rule.edge].T
+        share = np.stack([1 - rule.position, rule.position])
+        known = np.full(len(rule.outline.nodes), -1)
+        if surface is not None:
+            known[surface.nodes] = np.arange(len(surface.nodes))
+        felt = known[ends].min(axis=0) >= 0
+        if nodal is not None:
+            for node, part in zip(known[ends], share, strict=True):
+                for component, values in enumerate(force):
+                    np.add.at(nodal[component], node[felt], (part * values)[felt])
+        # Edges without nodes: no treatment that has any, or held particles behind them.
+        _, nearest = KDTree(lattice.points).query(rule.points[~felt])
+        for component, values in enumerate(force):
+            np.add.at(load[component], nearest, values[~felt])
+    return nodal

@@ -1,4 +1,8 @@
-"""Surface treatments: what is done for families that the body's edge or a crack cuts short."""
+"""Surface treatments: what is done for families that the body's edge or a crack cuts short.
+
+``none`` nothing; ``volume`` stiffens the bonds that are left (here); ``extrapolated`` lets missing
+bonds end at the surface (`solver.ended`).
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,7 @@ from numpy.typing import NDArray
 from .family import Family
 
 Array = NDArray[np.float64]
-Surface = Literal["none", "volume"]
+Surface = Literal["none", "volume", "extrapolated"]
 
 
 def check_surface(surface: str) -> None:

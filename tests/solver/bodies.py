@@ -45,8 +45,7 @@ class Cells(Region):
         self.mask, self.spacing = np.asarray(mask, dtype=bool), spacing
         rows, columns = np.nonzero(self.mask)
         boxes = shapely.box(columns, rows, columns + 1, rows + 1)
-        outline = shapely.union_all(boxes).boundary
-        self.outline = shapely.transform(outline, lambda xy: xy * spacing)
+        self.shape = shapely.transform(shapely.union_all(boxes), lambda xy: xy * spacing)
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -61,7 +60,10 @@ class Cells(Region):
         return inside & self.mask[np.clip(j, 0, rows - 1), np.clip(i, 0, columns - 1)]
 
     def edge_distance(self, x: Array, y: Array) -> Array:
-        return shapely.distance(self.outline, shapely.points(x, y))
+        return shapely.distance(self.shape.boundary, shapely.points(x, y))
+
+    def outline(self, step: float) -> shapely.Geometry:
+        return self.shape
 
 
 def block(columns: int, rows: int, spacing: float = 1.0) -> Cells:

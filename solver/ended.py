@@ -1,0 +1,459 @@
+"""Bonds that end at the surface: the treatment ``extrapolated``.
+
+Every particle keeps its full family. Where a neighbour is missing, or lies behind a crack, the
+bond ends where it meets the surface, at a point whose displacement is interpolated between
+surface nodes. It is a shorter bond of the same moduli: with ℓ the length that is left of |ξ|,
+
+    energy = ½ ℓ (k_n s² + k_t γ²) α Δv_p Δv_q,   s = n·(u_s − u_p)/ℓ,
+    γ = t·(u_s − u_p)/ℓ − [½ |ξ| θ_p + (ℓ − ½ |ξ|) θ_s]/ℓ,
+
+(in conduction ½ (ℓ/|ξ|) k g², g = (T_s − T_p)/ℓ). Why so:
+
+* In a homogeneous state s and γ, so also the force k_n s n + k_t γ t on p and its moment
+  ½ |ξ| k_t γ, are those of the whole bond: every particle is in equilibrium, as in the bulk.
+* What a bond gives to the surface is the force that it would carry across it, and the sum over
+  all bonds through a piece of surface is σ·n: zero on a free surface, the traction on a loaded one.
+  The couples (ℓ − ½|ξ|) k_t γ cancel, because bonds meet the surface at all shares of their length
+  alike. Without the nodes (ghost particles beyond the surface, say) forces of the stress *along*
+  the surface would remain in a layer of one horizon.
+* The energy is that of the part of the bond within the body; summed over the bonds through a
+  piece of surface it completes the energy density of the families there. It is positive
+  wherever the bonds' moduli are, rigid motions cost nothing, the operator stays symmetric.
+
+The nodes' displacements u_s are no unknowns: without inertia they follow from their own
+equilibrium, K_ss u_s = f_s − K_sp u_p, which extrapolates the particles' field to the surface;
+f_s are the tractions' work on u_s. What remains acts on the particles alone,
+K_pp − K_ps K_ss⁻¹ K_sp. A surface node feels only particles within a horizon, and K_ss, like a
+mass matrix along the outline, is banded and well conditioned: its factorisation costs next to
+nothing.
+
+A bond that a load breaks does not end at a surface: it carries nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse.linalg import SuperLU, splu
+
+from .family import Family
+from .lattice import Lattice
+from .micromoduli import ConductiveModuli, Moduli
+from .outline import Outline
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Indices = NDArray[np.int64]
+
+# A particle may lie on the very edge: its bonds keep this share of the spacing.
+SHORTEST = 0.1
+# Ratio of pivots below which the nodes' stiffness counts as singular.
+_SINGULAR = 1e-14
+# Turn (rad) of the region's edge that makes a corner.
+_CORNER = 0.2
+# Particles whose columns are solved for at once.
+_CHUNK = 200
+
+
+@dataclass(frozen=True, eq=False)
+class Chords:
+    """What corners of the body cut out of bonds between two missing particles.
+
+    Without them the forces that bonds give to the surface would not add up to σ·n within a
+    horizon of a corner.
+
+    Attributes
+    ----------
+    offset : ndarray of int, shape (k,)
+    edge, position : ndarray, shape (k, 2)
+        Where each enters and leaves the body.
+    length : ndarray, shape (k,), m
+        Between the two.
+    arm : ndarray, shape (k, 2), m
+        What the rotations at both ends contribute to ℓ γ: distance of the bond's far end from
+        the point, less ½ |ξ|.
+    """
+
+    offset: Indices
+    edge: Indices
+    position: Array
+    length: Array
+    arm: Array
+
+    @classmethod
+    def of(cls, lattice: Lattice, family: Family, outline: Outline) -> Chords | None:
+        """Chords at the convex corners of the region, None if there are none."""
+        corners = outline.corners(_CORNER)
+        if not len(corners):
+            return None
+        spacing, mask = lattice.spacing, lattice.mask
+        x, y = lattice.axes
+        # Cells around each corner, beyond the array too.
+        reach = family.reach
+        around = np.arange(-reach, reach + 1)
+        column = np.rint((corners[:, 0] - x[0]) / spacing).astype(int)[:, None] + around
+        row = np.rint((corners[:, 1] - y[0]) / spacing).astype(int)[:, None] + around
+        cells = {
+            (int(r), int(c))
+            for rows, columns in zip(row, column, strict=True)
+            for r in rows
+            for c in columns
+        }
+        cell = np.array(sorted(cells))
+
+        def empty(cells: Indices) -> Mask:
+            inside = (cells >= 0).all(axis=1) & (cells < mask.shape).all(axis=1)
+            full = np.zeros(len(cells), dtype=bool)
+            full[inside] = mask[tuple(cells[inside].T)]
+            return ~full
+
+        cell = cell[empty(cell)]
+        half = family.size // 2
+        start = np.repeat(cell, half, axis=0)
+        offset = np.tile(np.arange(half), len(cell))
+        step = family.offsets[offset]
+        kept = empty(start + step[:, ::-1])
+        start, offset, step = start[kept], offset[kept], step[kept]
+        origin = np.column_stack([x[0], y[0]]) + spacing * start[:, ::-1]
+        line, edge, position, share = outline.passages(origin, np.multiply(step, spacing))
+        whole = family.length[offset[line]]
+        length = (share[:, 1] - share[:, 0]) * whole
+        kept = length > SHORTEST * spacing
+        arm = np.column_stack([1 - share[:, 0], share[:, 1]]) - 0.5
+        return cls(
+            offset[line][kept],
+            edge[kept],
+            position[kept],
+            length[kept],
+            (arm * whole[:, None])[kept],
+        )
+
+    def touching(self, outline: Outline, touched: Mask) -> Chords:
+        """Those of which all nodes are among the `touched`."""
+        kept = touched[outline.edges[self.edge]].all(axis=(1, 2))
+        names = ("offset", "edge", "position", "length", "arm")
+        return Chords(*(getattr(self, name)[kept] for name in names))
+
+
+@dataclass(frozen=True, eq=False)
+class EndedBonds:
+    """Bonds that end at the surface.
+
+    Attributes
+    ----------
+    outline : Outline
+    particle, offset : ndarray of int, shape (k,)
+        Where each starts, and its index in the family.
+    edge : ndarray of int, shape (k,)
+        Edge of the outline that it meets.
+    position : ndarray, shape (k,)
+        Where on it, 0 to 1.
+    length : ndarray, shape (k,), m
+        ℓ, what is left of |ξ|.
+    chords : Chords, optional
+    """
+
+    outline: Outline
+    particle: Indices
+    offset: Indices
+    edge: Indices
+    position: Array
+    length: Array
+    chords: Chords | None = None
+
+    @classmethod
+    def of(
+        cls, lattice: Lattice, family: Family, outline: Outline, particles: Indices, lost: Mask
+    ) -> EndedBonds:
+        """From `lost`, shape (family size, particles): the bonds that do not reach a neighbour."""
+        column, offset = np.nonzero(lost.T)
+        particle = particles[column]
+        bond = np.multiply(family.offsets[offset], lattice.spacing)
+        edge, position, share = outline.first_hit(lattice.points[particle], bond)
+        met = edge >= 0
+        length = share * family.length[offset]
+        return cls(outline, particle[met], offset[met], edge[met], position[met], length[met])
+
+    def joined(self, others: EndedBonds) -> EndedBonds:
+        """These bonds, and those of `others` that end beside a node of these."""
+        touched = np.zeros(len(self.outline.nodes), dtype=bool)
+        touched[self.outline.edges[self.edge]] = True
+        kept = touched[self.outline.edges[others.edge]].any(axis=1)
+        names = ("particle", "offset", "edge", "position", "length")
+        both: dict[str, Any] = {
+            name: np.concatenate([getattr(self, name), getattr(others, name)[kept]])
+            for name in names
+        }
+        return replace(self, **both)
+
+    def with_chords(self, lattice: Lattice, family: Family) -> EndedBonds:
+        """The same with what the body's corners cut out of other bonds."""
+        chords = Chords.of(lattice, family, self.outline)
+        if chords is None:
+            return self
+        touched = np.zeros(len(self.outline.nodes), dtype=bool)
+        touched[self.outline.edges[self.edge]] = True
+        return replace(self, chords=chords.touching(self.outline, touched))
+
+    def stiffness(self, family: Family, moduli: Moduli, components: int) -> SurfaceStiffness:
+        """Their stiffness; made once, however many other bonds break."""
+        known = self.__dict__.get("_known")
+        if known is None or known[0] is not moduli:
+            known = moduli, SurfaceStiffness(self, family, moduli, components)
+            # The dataclass is frozen for everybody else.
+            self.__dict__["_known"] = known
+        stiffness: SurfaceStiffness = known[1]
+        return stiffness
+
+    def __len__(self) -> int:
+        return len(self.particle)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the arrays, bytes."""
+        arrays = (self.particle, self.offset, self.edge, self.position, self.length)
+        return sum(a.nbytes for a in arrays)
+
+
+class SurfaceStiffness:
+    """Stiffness of the ended bonds, the nodes' displacements condensed out.
+
+    Vectors over particles or nodes are component by component, as the operator's.
+
+    Parameters
+    ----------
+    ended : EndedBonds
+    family : Family
+    moduli : ElasticModuli or ConductiveModuli
+    components : int
+
+    Attributes
+    ----------
+    particles : ndarray of int, shape (p,)
+        Particles with ended bonds.
+    nodes : ndarray of int, shape (s,)
+        Nodes of the outline that they end between.
+    """
+
+    def __init__(self, ended: EndedBonds, family: Family, moduli: Moduli, components: int) -> None:
+        self.ended, self.components = ended, components
+        self.particles, here = np.unique(ended.particle, return_inverse=True)
+        ends = ended.outline.edges[ended.edge]
+        self.nodes = np.unique(ends)
+        count = len(self.particles), len(self.nodes)
+        number = np.full(len(ended.outline.nodes), -1)
+        number[self.nodes] = np.arange(count[1])
+        length = ended.length
+        rule = _Strains(family, moduli, components, ended.offset, length)
+        whole = family.length[ended.offset]
+        particle = rule.rows(-1.0, 0.5 * whole)
+        strain_p = _place(particle, [(here, np.ones_like(length))], count[0])
+        surface = rule.rows(1.0, length - 0.5 * whole)
+        strain_s = _place(surface, _between(number[ends], ended.position), count[1])
+        self._ends = particle, surface
+        scaled = sparse.diags_array(rule.weight.ravel()) @ strain_s
+        #: Diagonal entries of the particles in the operator's order, shape (entries, p).
+        self.own: Array = np.array(
+            [
+                np.bincount(
+                    here,
+                    (rule.weight * particle[:, a] * particle[:, b]).sum(axis=0),
+                    minlength=count[0],
+                )
+                for a, b in ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
+                if b < components
+            ]
+        )
+        #: K_sp, shape (components·s, components·p).
+        self.coupling: sparse.csr_array = sparse.csr_array(scaled.T @ strain_p)
+        #: K_ps.
+        self.transposed: sparse.csr_array = sparse.csr_array(self.coupling.T)
+        matrix = sparse.csc_array(strain_s.T @ scaled)
+        chords = ended.chords
+        if chords is not None and len(chords.offset):
+            rule = _Strains(family, moduli, components, chords.offset, chords.length)
+            strain = sparse.csr_array((rule.weight.size, components * count[1]))
+            for end, sign in enumerate((-1.0, 1.0)):
+                ends = number[ended.outline.edges[chords.edge[:, end]]]
+                rows = rule.rows(sign, chords.arm[:, end])
+                strain = strain + _place(rows, _between(ends, chords.position[:, end]), count[1])
+            scaled = sparse.diags_array(rule.weight.ravel()) @ strain
+            matrix = matrix + sparse.csc_array(strain.T @ scaled)
+        #: K_ss.
+        self.matrix: sparse.csc_array = matrix
+        self._factors = self._factorise(number[ended.outline.edges])
+
+    def _factorise(self, edges: Indices) -> SuperLU:
+        """Factors of K_ss. `edges` joins all nodes of the outline, −1 for those without bonds."""
+        options = {
+            "permc_spec": "MMD_AT_PLUS_A",
+            "diag_pivot_thresh": 0.0,
+            "options": {"SymmetricMode": True},
+        }
+        try:
+            factors = splu(self.matrix, **options)
+            pivots = np.abs(factors.U.diagonal())
+            if pivots.min() > _SINGULAR * pivots.max():
+                return factors
+        except RuntimeError:
+            pass
+        # Bonds that end at too few points, as on bodies of a few particles, leave nodes undecided:
+        # these follow their neighbours along the outline.
+        a, b = edges[(edges >= 0).all(axis=1)].T
+        size = self.matrix.shape[0] // self.components
+        ones = np.ones(len(a))
+        adjacency = sparse.coo_array((ones, (a, b)), shape=(size, size))
+        links = adjacency + adjacency.T
+        laplacian = sparse.diags_array(links.sum(axis=0)) - links
+        blocks = sparse.block_diag([laplacian] * self.components)
+        scale = _SINGULAR**0.5 * np.abs(self.matrix.diagonal()).mean()
+        self.matrix = sparse.csc_array(self.matrix + scale * blocks)
+        return splu(self.matrix, **options)
+
+    def nodal(self, values: Array, load: Array | None = None) -> Array:
+        """Displacements of the nodes for values of the particles, (components, s).
+
+        Parameters
+        ----------
+        values : ndarray, shape (components, p)
+        load : ndarray, shape (components, s), optional
+            Forces on the nodes per volume of a particle.
+        """
+        force = -(self.coupling @ values.ravel())
+        if load is not None:
+            force += load.ravel()
+        return np.asarray(self._factors.solve(force).reshape(self.components, -1))
+
+    def reaction(self, values: Array) -> Array:
+        """−K_ps K_ss⁻¹ K_sp u: what the nodes do to the particles, both (components, p)."""
+        return (self.transposed @ self.nodal(values).ravel()).reshape(values.shape)
+
+    def pull(self, load: Array) -> Array:
+        """−K_ps K_ss⁻¹ f: loads of the particles that replace those of the nodes, on the left."""
+        nodes = self._factors.solve(load.ravel())
+        return (self.transposed @ nodes).reshape(self.components, -1)
+
+    def condensed(self, basis: sparse.csr_array) -> sparse.csr_array:
+        """−Bᵀ K_ps K_ss⁻¹ K_sp B for a sparse basis B of the particles' values."""
+        lowered = sparse.csc_array(self.coupling @ basis)
+        used = np.unique(lowered.nonzero()[1])
+        dense = lowered[:, used].toarray()
+        block = -(dense.T @ self._factors.solve(dense))
+        place = sparse.csr_array(
+            (np.ones(len(used)), (used, np.arange(len(used)))), shape=(basis.shape[1], len(used))
+        )
+        return sparse.csr_array(place @ sparse.csr_array(0.5 * (block + block.T)) @ place.T)
+
+    def strains(self, values: Array, nodal: Array) -> tuple[Array, Array]:
+        """Strains s and γ (or g) of the bonds, and the differences of the values at their ends.
+
+        Parameters
+        ----------
+        values, nodal : ndarray, shapes (components, p) and (components, s)
+            Of the particles and of the nodes.
+
+        Returns
+        -------
+        tuple of ndarray, shapes (strains, k) and (components, k)
+        """
+        here = np.searchsorted(self.particles, self.ended.particle)
+        ends = np.searchsorted(self.nodes, self.ended.outline.edges[self.ended.edge])
+        position = self.ended.position
+        there = (1 - position) * nodal[:, ends[:, 0]] + position * nodal[:, ends[:, 1]]
+        at = values[:, here]
+        strain = np.einsum("abk,bk->ak", self._ends[0], at)
+        strain += np.einsum("abk,bk->ak", self._ends[1], there)
+        return strain, there - at
+
+    def relief(self, which: Indices) -> Array:
+        """Diagonal blocks of −K_ps K_ss⁻¹ K_sp of some particles (positions among `particles`).
+
+        Shape (len(which), components, components).
+        """
+        c, count = self.components, len(self.particles)
+        blocks = np.zeros((len(which), c, c))
+        for begin in range(0, len(which), _CHUNK):
+            part = which[begin : begin + _CHUNK]
+            columns = (part[:, None] + count * np.arange(c)).ravel()
+            right = self.coupling[:, columns].toarray()
+            solved = self._factors.solve(right)
+            # One particle's columns at a time: only their products among themselves count.
+            right, solved = (x.reshape(-1, len(part), c) for x in (right, solved))
+            blocks[begin : begin + len(part)] = -np.einsum("spa,spb->pab", right, solved)
+        return 0.5 * (blocks + blocks.transpose(0, 2, 1))
+
+    @cached_property
+    def nbytes(self) -> int:
+        """Memory of matrices and factors, bytes."""
+        matrices = (self.coupling, self.transposed)
+        size = sum(m.data.nbytes + m.indices.nbytes + m.indptr.nbytes for m in matrices)
+        return int(size + 12 * self._factors.nnz + self.own.nbytes + self.ended.nbytes)
+
+
+class _Strains:
+    """s and γ (or g) of bonds of given offsets and lengths, as rows of values at their ends."""
+
+    def __init__(
+        self, family: Family, moduli: Moduli, components: int, offset: Indices, length: Array
+    ) -> None:
+        self.normal, self.tangent = family.normal[offset].T, family.tangent[offset].T
+        # A bond without length would be a rigid link. Below a share of the spacing its stiffness
+        # grows no more; its geometry stays, so that rigid motions still strain nothing.
+        length = np.maximum(length, SHORTEST * family.spacing)
+        self.length, self.spacing, self.components = length, family.spacing, components
+        weight = family.weight[offset] * family.cell * length
+        if isinstance(moduli, ConductiveModuli):
+            moduli_of = moduli.conductivity[offset] / family.length[offset]
+            #: Twice the energy for a strain of one, shape (strains, k).
+            self.weight: Array = (weight * moduli_of)[None]
+        elif components == 2:
+            self.weight = (weight * moduli.normal[offset])[None]
+        else:
+            self.weight = weight * np.array([moduli.normal[offset], moduli.shear[offset]])
+
+    def rows(self, sign: float, arm: Array) -> Array:
+        """The share of one end, shape (strains, components, k).
+
+        Parameters
+        ----------
+        sign : float
+            −1 where the bond starts, 1 where it ends.
+        arm : ndarray, shape (k,), m
+            What the rotation there contributes to −ℓ γ.
+        """
+        slope = sign / self.length
+        if self.components == 1:
+            return np.asarray(slope[None, None])
+        if self.components == 2:
+            return np.asarray((slope * self.normal)[None])
+        zero = np.zeros_like(slope)
+        # Rotations are scaled by the spacing.
+        turn = -arm / (self.spacing * self.length)
+        return np.array(
+            [[*(slope * self.normal), zero], [*(slope * self.tangent), turn]], dtype=np.float64
+        )
+
+
+def _between(nodes: Indices, position: Array) -> list[tuple[Indices, Array]]:
+    """Nodes (k, 2) and weights of points along edges."""
+    return [(nodes[:, 0], 1 - position), (nodes[:, 1], position)]
+
+
+def _place(rows: Array, ends: list[tuple[Indices, Array]], count: int) -> sparse.csr_array:
+    """Rows (strains, components, k) of values that are weighted means over `ends`."""
+    strains, components, size = rows.shape
+    row = np.arange(strains * size).reshape(strains, size)
+    values, i, j = [], [], []
+    for a in range(strains):
+        for b in range(components):
+            for place, weight in ends:
+                values.append(rows[a, b] * weight)
+                i.append(row[a])
+                j.append(b * count + place)
+    entries = np.concatenate(values), (np.concatenate(i), np.concatenate(j))
+    return sparse.csr_array(entries, shape=(strains * size, components * count))
