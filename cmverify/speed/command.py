@@ -46,6 +46,7 @@ def speed(
         # First, because peak memory only grows.
         ("Growth", lambda: measure.growth(_LADDER[level]), verdicts.of_growth),
         ("Static scenes", lambda: measure.scenes(resolution), verdicts.of_scenes),
+        ("Surface treatments", lambda: measure.surfaces(resolution), verdicts.of_surfaces),
         (
             "Product with the stiffness",
             lambda: measure.kernel(resolution),

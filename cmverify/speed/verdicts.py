@@ -66,3 +66,17 @@ def of_growth(rows: list[Row]) -> list[Verdict]:
 def of_scenes(rows: list[Row]) -> list[Verdict]:
     """Iterations on other static scenes: twenty is the goal."""
     return [_at_most(f"{row.name}: iterations", row.values["iterations"], 20) for row in rows]
+
+
+def of_surfaces(rows: list[Row]) -> list[Verdict]:
+    """At most 1.5 times the iterations; nothing at all where every edge is prescribed."""
+    found = []
+    for row in rows:
+        if not row.name.endswith(": extrapolated"):
+            continue
+        more = row.values["iterations ÷ none"]
+        found.append(_at_most(f"{row.name}: iterations ÷ those without", more, 1.5))
+        if row.name.startswith("heat"):
+            bytes_more = row.values["bytes ÷ none"]
+            found.append(_at_most(f"{row.name}: memory ÷ that without", bytes_more, 1.0))
+    return found

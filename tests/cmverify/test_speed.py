@@ -30,6 +30,16 @@ def test_iterations_on_all_static_scenes() -> None:
     assert all(v.passed for v in found), [v for v in found if not v.passed]
 
 
+def test_surfaces_cost_few_iterations_and_nothing_where_there_are_none() -> None:
+    rows = measure.surfaces(20)
+    found = verdicts.of_surfaces(rows)
+    assert len(found) == 8
+    assert all(v.passed for v in found), [v for v in found if not v.passed]
+    # Where there are free surfaces the treatment is there.
+    by_name = {row.name: row.values for row in rows}
+    assert by_name["plate with a hole: extrapolated"]["bytes ÷ none"] > 2
+
+
 def test_growth_reports_flat_iterations_and_a_falling_error() -> None:
     rows = measure.growth((30, 60))
     assert all(row.values["iterations"] <= 12 for row in rows)
@@ -49,6 +59,11 @@ def test_growth_reports_flat_iterations_and_a_falling_error() -> None:
             verdicts.of_kernel,
             Row("x: matrix-free, 2 threads", {"slower": 1 / 1.62, "threads": 2}),
             Row("x: matrix-free, 2 threads", {"slower": 1 / 1.58, "threads": 2}),
+        ),
+        (
+            verdicts.of_surfaces,
+            Row("heat: extrapolated", {"iterations ÷ none": 1.5, "bytes ÷ none": 1.0}),
+            Row("heat: extrapolated", {"iterations ÷ none": 1.51, "bytes ÷ none": 1.01}),
         ),
         (
             verdicts.of_solvers,
