@@ -26,7 +26,7 @@ Mask = NDArray[np.bool_]
 # Kinds of particles as the kernels know them.
 _BULK, _TRUNCATED, _SPECIAL = 0, 1, 2
 # Own stiffness, relative to the bulk's, beyond which a particle is tied to the surface's nodes.
-STIFF = 1.0
+STIFF = 2.0
 
 
 def offset_blocks(bonds: Bonds, moduli: Moduli) -> Array:
