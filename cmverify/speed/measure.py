@@ -177,8 +177,15 @@ def surfaces(resolution: int = 60, tolerance: float = 1e-8) -> list[Row]:
         that a product reads, and their ratios to those of the same scene without treatment.
     """
     every = static_scenes(resolution)
-    chosen = ("crack tip", "plate, clamped and pulled", "plate with a hole")
-    chosen += ("notched plate with a hole", "edge crack", "curved crack", "heat, isotropic")
+    chosen = [
+        "crack tip",
+        "plate, clamped and pulled",
+        "plate with a hole",
+        "notched plate with a hole",
+        "edge crack",
+        "curved crack",
+        "heat, isotropic",
+    ]
     rows = []
     for name in chosen:
         bare: dict[str, Any] = {}
