@@ -90,6 +90,16 @@ def kink_matrix(
     return np.array(columns).T
 
 
+def _quadratic(
+    voigt: NDArray[np.float64], k1: NDArray[np.float64], k2: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """G for factors in the reference axes, opening along axis 2 and sliding along axis 1."""
+    opening, sliding, both = (
+        energy_release_rate(voigt, *mode) for mode in ((1.0, 0.0), (0.0, 1.0), (1.0, 1.0))
+    )
+    return opening * k1**2 + sliding * k2**2 + (both - opening - sliding) * k1 * k2
+
+
 @dataclass(frozen=True)
 class KinkTable:
     """F(ω) at some angles, with a polynomial through them.
@@ -131,12 +141,11 @@ class KinkTable:
         wanted = np.asarray(angle, dtype=float)
         if wanted.min() < self.angles[0] or wanted.max() > self.angles[-1]:
             raise ValueError("the angle lies outside the table")
-        k = self.at(wanted) @ [KI, KII]
-        flat = [
-            energy_release_rate(self.voigt, k1, k2, w)
-            for (k1, k2), w in zip(k.reshape(-1, 2), wanted.ravel(), strict=True)
-        ]
-        return np.reshape(flat, wanted.shape)
+        k1, k2 = np.moveaxis(self.at(wanted) @ [KI, KII], -1, 0)
+        c, s = np.cos(wanted), np.sin(wanted)
+        # G is a quadratic form of the kink's factors that turns with it like a tensor (half the
+        # inverse of Barnett and Lothe's): sliding along the kink, opening across it.
+        return _quadratic(self.voigt, k2 * s + k1 * c, k2 * c - k1 * s)
 
     def kink_angle(self, KI: float, KII: float) -> float:
         """Angle of the largest G, rad; faces that would close (k_I < 0) do not count.

@@ -31,7 +31,10 @@ def test_every_case_says_what_a_reader_needs():
 def test_levels_grow():
     for case in registry.all_cases():
         for method in case.methods:
-            ladders = [method.resolutions[level] for level in Level]
+            ladders = [method.resolutions.get(level, ()) for level in Level]
+            if not ladders[0]:  # a method for the longer levels only
+                assert ladders[2]
+                continue
             assert ladders[0][0] == ladders[2][0]
             assert ladders[0][-1] <= ladders[1][-1] <= ladders[2][-1]
 

@@ -73,6 +73,17 @@ def test_isotropic_pure_mode_two_kinks_at_the_known_angle() -> None:
     assert np.degrees(found.kink_angle(0.0, 1.0)) == pytest.approx(-75.6, abs=0.3)
 
 
+def test_energy_release_rate_turns_with_the_kink() -> None:
+    angles = np.radians(np.linspace(-95, 95, 20))
+    found = KinkTable(
+        C, angles, np.stack([np.eye(2) + 0.2 * np.array([[w, 1], [2, -w]]) for w in angles])
+    )
+    direct = [
+        energy_release_rate(C, *(found.at(np.array(w)) @ [0.6, 0.8]), float(w)) for w in angles
+    ]
+    np.testing.assert_allclose(found.energy_release_rate(0.6, 0.8, angles), direct, rtol=1e-12)
+
+
 def test_bad_input_is_refused() -> None:
     with pytest.raises(ValueError, match="kink's angle"):
         kink_matrix(C, 3.0)
