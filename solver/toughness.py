@@ -23,7 +23,7 @@ from .family import Family
 from .influence import CONSTANT, Influence
 
 Array = NDArray[np.float64]
-ToughnessCalibration = Literal["lattice", "continuum"]
+ToughnessCalibration = Literal["lattice", "continuum", "even"]
 
 #: Largest exponent that is searched for a ratio: sharper lobes than any family resolves.
 LARGEST_EXPONENT = 512
@@ -51,11 +51,13 @@ class Toughness:
         A: 1 for two lobes (Eq. 93), 2 for square symmetry (Eq. 101), any other by footnote 7.
     axis : float
         ζ, rad, anticlockwise from axis 1.
-    calibration : {"lattice", "continuum"}
+    calibration : {"lattice", "continuum", "even"}
         Where the constants come from: the sum over the bonds that a straight cut through the
         lattice breaks, or the integral of Eq. 92 (its closed form, Eqs. 97–103). With the
         lattice's sum G1 and G2 are exact; for A > 2, where a square lattice tells the A
-        equivalent cuts apart, in their mean.
+        equivalent cuts apart, in their mean. ``even``, beyond the paper, is the lattice's with
+        the law multiplied by `evenness`: the same fracture energies, but cuts along the rows of
+        the lattice are hardly cheaper than others, and cracks are less drawn to them.
 
     Raises
     ------
@@ -128,7 +130,8 @@ class Toughness:
             If no non-negative w_c of this law have the ratio of the fracture energies.
         """
         w1, w2 = self.constants(family)
-        return w2 + (w1 - w2) * self._lobes(family.angle, self.n)
+        law = w2 + (w1 - w2) * self._lobes(family.angle, self.n)
+        return law * evenness(family) if self.calibration == "even" else law
 
     def constants(self, family: Family) -> tuple[float, float]:
         """w_c1 and w_c2, of bonds along ζ and along ζ + π/(2A).
@@ -199,8 +202,9 @@ class Toughness:
             lobes = radial * _half_circle(n, self.frequency, normals - self.axis)
             total = np.full_like(lobes, 2 * radial)
         else:
-            lobes = _cut_sum(family, self._lobes(family.angle, n), normals)
-            total = _cut_sum(family, np.ones(family.size), normals)
+            share = evenness(family) if self.calibration == "even" else np.ones(family.size)
+            lobes = _cut_sum(family, share * self._lobes(family.angle, n), normals)
+            total = _cut_sum(family, share, normals)
         along, both = lobes.mean(axis=1), total.mean(axis=1)
         return np.column_stack([along, both - along])
 
@@ -235,6 +239,33 @@ class Toughness:
             f"{self.frequency} the ratio G1/G2 of fracture energies can be from {low:.4g} to at "
             f"most {high:.4g}, not {self.G1 / self.across_second:.4g}; {remedy}"
         )
+
+
+def evenness(family: Family) -> Array:
+    """Factors on w_c that give every direction of bonds its due share of the toughness.
+
+    A square lattice has many bonds along its rows and none close to them, so that a cut between
+    two rows, which these bonds do not cross, is cheaper than at a small angle to it. Here all
+    bonds of one direction together get the weight of the angle between its neighbours.
+
+    Returns
+    -------
+    ndarray, shape (family size,)
+        With a mean, weighted as in the sum over a cut, of one.
+    """
+    half = family.size // 2
+    offsets = family.offsets[:half]
+    rays = offsets // np.gcd(offsets[:, 0], offsets[:, 1])[:, None]
+    primitive, member = np.unique(rays, axis=0, return_inverse=True)
+    member = member.reshape(-1)
+    angle = np.mod(np.arctan2(primitive[:, 1], primitive[:, 0]), np.pi)
+    order = np.argsort(angle)
+    gap = np.diff(angle[order], append=angle[order[0]] + np.pi)
+    sector = np.empty_like(angle)
+    sector[order] = 0.5 * (gap + np.roll(gap, 1))
+    mass = np.bincount(member, family.weight[:half] * family.length[:half])
+    share = (sector / np.pi) * mass.sum() / mass
+    return np.tile(share[member], 2)
 
 
 def _second_moment(influence: Influence) -> float:

@@ -8,6 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from solver import Family, Toughness, ToughnessError
+from solver.toughness import evenness
 from tests.solver.bodies import exact
 
 FAMILY = Family(5, 0.2)
@@ -162,6 +163,39 @@ def test_a_ratio_out_of_reach_of_the_law_is_said_to_be():
 def test_bad_input_is_named(arguments, says):
     with pytest.raises(ToughnessError, match=says):
         Toughness(**arguments)
+
+
+@pytest.mark.parametrize("m", [3, 5, 7])
+def test_even_bonds_cost_the_same_and_level_the_cuts_along_rows(m):
+    family = Family(m, 0.2)
+    directions = np.linspace(0.0, np.pi, 361)
+    spread = {}
+    for calibration in ("lattice", "even"):
+        law = Toughness(2.0, calibration=calibration)
+        assert counted(family, law.energies(family), 1, 0) == pytest.approx(2.0, rel=1e-12)
+        found = law.fracture_energy(directions, family)
+        spread[calibration] = found.max() / found.min() - 1
+    assert spread["even"] < 0.5 * spread["lattice"]
+
+
+def test_even_bonds_cost_G_in_both_directions():
+    law = Toughness(2.1, 1.0, n=8, axis=np.arctan2(1, 2), calibration="even")
+    w = law.energies(FAMILY)
+    assert w.min() >= 0
+    assert counted(FAMILY, w, -1, 2) == pytest.approx(2.1, rel=1e-12)
+    assert counted(FAMILY, w, 2, 1) == pytest.approx(1.0, rel=1e-12)
+
+
+def test_evenness_by_hand():
+    # Four neighbours: two directions, each with half of the angle and half of the mass. Eight:
+    # four directions of 45° each, the diagonals √2 as long.
+    np.testing.assert_allclose(evenness(Family(1, 0.5, "full")), 1.0, rtol=1e-14)
+    eight = Family(np.sqrt(2), 0.5, "full")
+    total = 2 + 2 * np.sqrt(2)
+    wanted = np.where(
+        np.abs(eight.offsets).sum(axis=1) == 1, 0.25 * total, 0.25 * total / np.sqrt(2)
+    )
+    np.testing.assert_allclose(evenness(eight), wanted, rtol=1e-14)
 
 
 def test_the_influence_function_drops_out_of_the_criterion():

@@ -20,6 +20,7 @@ VARIATIONS: dict[str, dict[str, Any]] = {
     "batch × 2": {"front": 2.0},
     "turned 22.5°": {"turn": 22.5},
     "turned 22.5°, batch ÷ 8": {"turn": 22.5, "front": 1 / 8},
+    "even bonds, batch ÷ 2": {"toughness": "even", "front": 1 / 2},
     "no surface factors": {"surface": "none"},
 }
 VARIED = {Level.PAPER: (60,)}

@@ -90,7 +90,10 @@ def study(plan: Study, n: int) -> Measurement:
             "seconds an angle": round(float(np.mean(seconds)), 2),
         },
         fields=_fields(grown[-1]) if plan.extra else None,
-        lines=_lines(material, mixities, grown, read) if plan.extra else (),
+        lines=(
+            *_deviations(plan.kink, mixities, read, energy),
+            *(_lines(material, mixities, grown, read) if plan.extra else ()),
+        ),
     )
 
 
@@ -133,6 +136,34 @@ def _fields(grown: Grown) -> FieldSet:
         k: Field(f.label, f.unit, f.computed[whole], f.reference[whole]) for k, f in items.items()
     }
     return FieldSet(points[whole], kept, spacing=1.0 / kink.n)
+
+
+def _deviations(
+    kink: Kink, mixities: Sequence[float], read: Array, energy: Array
+) -> tuple[LinePlot, LinePlot]:
+    """What is varied beside what is not: deviations, and how the rows of the lattice draw."""
+    mixed, fine = np.array(mixities), np.linspace(0.0, 90.0, 46)
+    apart = np.array([hoop_angle(kink.material, a) - energy_angle(kink.material, a) for a in fine])
+    ends = np.array([-100.0, 40.0])
+    return (
+        LinePlot(
+            "Deviation from the energy criterion, one thing varied at a time",
+            "$\\alpha_K$ (°)",
+            "deviation of the kink angle (°)",
+            (Curve("bond model", mixed, read - energy, apart, fine),),
+            over_methods=True,
+            joined=True,
+            reference_label="hoop criterion",
+        ),
+        LinePlot(
+            "Directions from axis 1 of the lattice, whose densest rows run at 0°, ±45° and 90°",
+            "by the energy criterion (°)",
+            "found (°)",
+            (Curve("bond model", energy + kink.turn, read + kink.turn, ends, ends),),
+            over_methods=True,
+            reference_label="equal",
+        ),
+    )
 
 
 def _lines(

@@ -46,6 +46,8 @@ class Kink:
     turn : float
         Angle of the crack (and of the material with it) to the lattice's axis 1, degrees.
     surface : "none" or "volume"
+    toughness : "lattice" or "even"
+        Whether all bonds share one w_c, or those along the lattice's rows are levelled.
     mirrored : bool
         Material and load reflected at the crack's line.
     """
@@ -57,6 +59,7 @@ class Kink:
     front: float = 1.0
     turn: float = 0.0
     surface: str = "volume"
+    toughness: str = "lattice"
     mirrored: bool = False
 
     @property
@@ -147,7 +150,7 @@ def grow_kink(kink: Kink, reach: float = REACH) -> Grown:
     )
     run = grow(
         scene,
-        Toughness(1.0),
+        Toughness(1.0, calibration=kink.toughness),  # type: ignore[arg-type]
         Programme(control="following"),
         batch=batch(kink),
         tolerance=1e-6,
