@@ -232,6 +232,8 @@ class Load:
 _POINTS = 24
 # An edge belongs to a straight line if both its ends lie within this share of its length.
 _ALONG = 0.2
+# Smaller shares of an edge are rounding of where a load begins.
+_SLIVER = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -291,7 +293,7 @@ class Quadrature:
         # Edges may run either way.
         ends = [np.clip((x - a) / (b - a), 0.0, 1.0) for x in (0.0, length)]
         low, high = np.minimum(*ends), np.maximum(*ends)
-        kept = high > low
+        kept = high > low + _SLIVER
         return cls._rule(outline, edge[kept], low[kept], high[kept])
 
     @classmethod

@@ -24,10 +24,12 @@ Indices = NDArray[np.int64]
 _CLOSE = 0.3
 # Distance of nodes in spacings. On edges that run obliquely through the lattice some cells
 # average out where bonds happen to end (of 1, 1.5, 2, 2.5, 3, 4 cells 2.5 had the smallest errors
-# on turned rectangles, discs and holes). On a crack's face the last edge before the tip, where the
+# on turned rectangles, discs and holes). Along a row of cells all nodes see the same bonds if they
+# are a spacing apart: a free square then conducts exactly and converges at second order (with 2.5
+# at order 1.5). On a crack's face the last edge before the tip, where the
 # faces part linearly, sets how far the lattice sees the crack reach: of 1, 2, 3 cells one has the
 # smallest error in mode I and less than separate tips in mode II.
-_EDGE_STEP, _FACE_STEP = 2.5, 1.0
+_EDGE_STEP, _LEVEL_STEP, _FACE_STEP = 2.5, 1.0, 1.0
 # Share of the step within which a line counts as touching.
 _TIE = 1e-9
 # Bonds whose candidates are compared at once.
@@ -82,7 +84,8 @@ class Outline:
 
         step = _EDGE_STEP * spacing
         for ring in _rings(region, step):
-            chain(*_split(_walk(ring, step, closed=True), cracks, step), 0)
+            line = _walk(ring, step, closed=True, level=_LEVEL_STEP * spacing)
+            chain(*_split(line, cracks, step), 0)
         for crack in cracks:
             line = _walk(np.array(crack.points), _FACE_STEP * spacing, closed=False)
             size = len(line)
@@ -239,8 +242,11 @@ def _rings(region: Region, step: float) -> list[Array]:
     return [shapely.get_coordinates(ring)[:-1] for ring in rings]
 
 
-def _walk(points: Array, step: float, closed: bool) -> Array:
-    """The polyline with vertices at most `step` apart, without vertices too close to tell."""
+def _walk(points: Array, step: float, closed: bool, level: float | None = None) -> Array:
+    """The polyline with vertices at most `step` apart, without vertices too close to tell.
+
+    Pieces along an axis have vertices at most `level` apart, if that is given.
+    """
     size = np.hypot(*(np.roll(points, -1, axis=0) - points).T)
     if closed:
         kept, since = [], np.inf
@@ -254,7 +260,10 @@ def _walk(points: Array, step: float, closed: bool) -> Array:
         points = np.array([*kept, kept[0]])
     pieces = []
     for first, last in pairwise(points):
-        count = max(1, int(np.ceil(np.hypot(*(last - first)) / step - 1e-6)))
+        along = np.abs(last - first)
+        runs_level = level is not None and along.min() <= 1e-9 * along.max()
+        apart = level if runs_level else step
+        count = max(1, int(np.ceil(np.hypot(*along) / apart - 1e-6)))
         pieces.append(first + np.linspace(0, 1, count, endpoint=False)[:, None] * (last - first))
     if not closed:
         pieces.append(points[-1:])
