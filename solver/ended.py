@@ -27,6 +27,9 @@ K_pp − K_ps K_ss⁻¹ K_sp. A surface node feels only particles within a horiz
 mass matrix along the outline, is banded and well conditioned: its factorisation costs next to
 nothing.
 
+Edges along the lattice's rows need one thing more, a thin membrane on the nodes: see
+`solver.skin`.
+
 A bond that a load breaks does not end at a surface: it carries nothing.
 """
 
@@ -45,6 +48,7 @@ from .family import Family
 from .lattice import Lattice
 from .micromoduli import ConductiveModuli, Moduli
 from .outline import Outline
+from .skin import thickness
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -284,9 +288,27 @@ class SurfaceStiffness:
                 strain = strain + _place(rows, _between(ends, chords.position[:, end]), count[1])
             scaled = sparse.diags_array(rule.weight.ravel()) @ strain
             matrix = matrix + sparse.csc_array(strain.T @ scaled)
+        matrix = matrix + self._skin(family, moduli, number)
         #: K_ss.
         self.matrix: sparse.csc_array = matrix
         self._factors = self._factorise(number[ended.outline.edges])
+
+    def _skin(self, family: Family, moduli: Moduli, number: Indices) -> sparse.csc_array:
+        """The membrane that makes up for strips of the lattice along the edge (`solver.skin`)."""
+        outline, c, count = self.ended.outline, self.components, len(self.nodes)
+        ends = number[outline.edges]
+        edges = np.nonzero((outline.face == 0) & (ends >= 0).all(axis=1))[0]
+        if not len(edges):
+            return sparse.csc_array((c * count, c * count))
+        stiffness = thickness(outline, family, moduli, edges) / family.cell
+        length = outline.length[edges]
+        along = (outline.nodes[outline.edges[edges, 1]] - outline.nodes[outline.edges[edges, 0]]).T
+        along = along / length if c > 1 else np.ones((1, len(edges)))
+        rows = np.zeros((1, c, len(edges)))
+        rows[0, : len(along)] = along / length
+        one = np.ones(len(edges))
+        strain = _place(rows, [(ends[edges, 1], one), (ends[edges, 0], -one)], count)
+        return sparse.csc_array(strain.T @ sparse.diags_array(stiffness * length) @ strain)
 
     def _factorise(self, edges: Indices) -> SuperLU:
         """Factors of K_ss. `edges` joins all nodes of the outline, −1 for those without bonds."""
