@@ -24,7 +24,7 @@ Indices = NDArray[np.int64]
 _CLOSE = 0.3
 # Distance of nodes in spacings. On edges that run obliquely through the lattice some cells
 # average out where bonds happen to end (of 1, 1.5, 2, 2.5, 3, 4 cells 2.5 had the smallest errors
-# on turned rectangles, discs and holes). Along a row of cells all nodes see the same bonds if they
+# on turned rectangles, discs and holes). Between two rows of cells all nodes see the same bonds if they
 # are a spacing apart: a free square then conducts exactly and converges at second order (with 2.5
 # at order 1.5). On a crack's face the last edge before the tip, where the
 # faces part linearly, sets how far the lattice sees the crack reach: of 1, 2, 3 cells one has the
@@ -245,7 +245,8 @@ def _rings(region: Region, step: float) -> list[Array]:
 def _walk(points: Array, step: float, closed: bool, level: float | None = None) -> Array:
     """The polyline with vertices at most `step` apart, without vertices too close to tell.
 
-    Pieces along an axis have vertices at most `level` apart, if that is given.
+    Pieces that run between two rows (or columns) of cells of size `level` have vertices that far
+    apart, if it is given.
     """
     size = np.hypot(*(np.roll(points, -1, axis=0) - points).T)
     if closed:
@@ -261,8 +262,10 @@ def _walk(points: Array, step: float, closed: bool, level: float | None = None) 
     pieces = []
     for first, last in pairwise(points):
         along = np.abs(last - first)
-        runs_level = level is not None and along.min() <= 1e-9 * along.max()
-        apart = level if runs_level else step
+        apart = step
+        if level is not None and along.min() <= 1e-9 * along.max():
+            row = first[int(np.argmin(along))] / level
+            apart = level if abs(row - np.rint(row)) < 1e-6 else step
         count = max(1, int(np.ceil(np.hypot(*along) / apart - 1e-6)))
         pieces.append(first + np.linspace(0, 1, count, endpoint=False)[:, None] * (last - first))
     if not closed:

@@ -135,8 +135,10 @@ def thickness(outline: Outline, family: Family, moduli: Moduli, edges: Indices) 
         _BUMP * _REACH,
         _FINE,
     )
-    # Half a strip at most lacks anywhere.
-    result[own] = round_enough * np.clip(lack, -0.5, 0.5) * h * modulus
+    # Half a strip at most lacks anywhere. On short edges what is too much could take more stiffness
+    # than their nodes have.
+    least = -0.5 * np.minimum(1.0, outline.length[edges[own]] / (2.0 * h))
+    result[own] = round_enough * np.clip(lack, least, 0.5) * h * modulus
     return result
 
 
