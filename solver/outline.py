@@ -22,13 +22,13 @@ Indices = NDArray[np.int64]
 
 # Vertices nearer to each other than this share of the step become one.
 _CLOSE = 0.3
-# Distance of nodes in spacings. On edges that run obliquely through the lattice some cells
-# average out where bonds happen to end (of 1, 1.5, 2, 2.5, 3, 4 cells 2.5 had the smallest errors
-# on turned rectangles, discs and holes). Between two rows of cells all nodes see the same bonds if they
-# are a spacing apart: a free square then conducts exactly and converges at second order (with 2.5
-# at order 1.5). On a crack's face the last edge before the tip, where the
-# faces part linearly, sets how far the lattice sees the crack reach: of 1, 2, 3 cells one has the
-# smallest error in mode I and less than separate tips in mode II.
+# Distance of nodes in spacings. On edges that run obliquely through the lattice some cells average
+# out where bonds happen to end (of 1, 1.5, 2, 2.5, 3, 4 cells 2.5 had the smallest errors on turned
+# rectangles, discs and holes). Between two rows of cells all nodes see the same bonds if they are a
+# spacing apart: a free square then conducts exactly and converges at second order (with 2.5 at
+# order 1.5). On a crack's face the last edge before the tip, where the faces part linearly, sets
+# how far the lattice sees the crack reach: of 1, 2, 3 cells one has the smallest error in mode I
+# and less than separate tips in mode II.
 _EDGE_STEP, _LEVEL_STEP, _FACE_STEP = 2.5, 1.0, 1.0
 # Share of the step within which a line counts as touching.
 _TIE = 1e-9
