@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from . import crack_path
 from .micromoduli import ConductiveModuli, ElasticModuli
 from .solution import Solution
 
@@ -272,6 +273,13 @@ def strain_energy_density(solution: Solution) -> Array:
             density *= solution.discretisation.family.length[o]
         ends.add(0.25 * ends.weight * density, result)
     return _aside(solution, result)
+
+
+def damage(solution: Solution) -> Array:
+    """Share of each particle's family that is cut or broken (Eq. 105), shape (N,); see
+    `solver.crack_path.damage`. NaN at parts that were set aside.
+    """
+    return _aside(solution, crack_path.damage(solution.discretisation.bonds))
 
 
 def displacement_gradient(solution: Solution) -> Array:
