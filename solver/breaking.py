@@ -149,6 +149,8 @@ class Breakable:
         self.factors: Array = self.whole.copy()
         #: Bonds that must not break, (half, N), or None.
         self.kept: Mask = self._kept(discretisation, no_fail)
+        #: Bonds that end at the surface: they store energy and do not break.
+        self.surface = discretisation.operator.surface
         self._out = np.empty_like(self.factors)
         self._grids = np.zeros((2, 3, int(np.prod(lattice.shape))))
 
@@ -206,7 +208,12 @@ class Breakable:
         bond_kernels.bond_work(
             grid, other, self._segments, self._steps, self._stored, self.factors, out
         )
-        return float(out.sum())
+        total = float(out.sum())
+        if self.surface is not None:
+            mine = np.nan_to_num(unknowns[:, self.surface.particles])
+            theirs = mine if others is None else np.nan_to_num(others[:, self.surface.particles])
+            total += 0.5 * self.family.cell * float((theirs * self.surface.force(mine)).sum())
+        return total
 
     def energy_of(self, unknowns: Array, bonds: Indices) -> Array:
         """Energy that single bonds hold, J per unit thickness; `bonds` are flat indices."""

@@ -60,6 +60,8 @@ SHORTEST = 0.1
 _SINGULAR = 1e-14
 # Turn (rad) of the region's edge that makes a corner.
 _CORNER = 0.2
+# Entries of a diagonal block in the operator's order.
+_ENTRIES = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
 # Particles whose columns are solved for at once.
 _CHUNK = 200
 
@@ -269,7 +271,7 @@ class SurfaceStiffness:
                     (rule.weight * particle[:, a] * particle[:, b]).sum(axis=0),
                     minlength=count[0],
                 )
-                for a, b in ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
+                for a, b in _ENTRIES
                 if b < components
             ]
         )
@@ -354,6 +356,16 @@ class SurfaceStiffness:
     def reaction(self, values: Array) -> Array:
         """−K_ps K_ss⁻¹ K_sp u: what the nodes do to the particles, both (components, p)."""
         return (self.transposed @ self.nodal(values).ravel()).reshape(values.shape)
+
+    def force(self, values: Array) -> Array:
+        """What displaced particles feel of all ended bonds, their own part and the nodes'."""
+        out = self.reaction(values)
+        pairs = [(a, b) for a, b in _ENTRIES if b < self.components]
+        for entry, (a, b) in zip(self.own, pairs, strict=True):
+            out[a] += entry * values[b]
+            if a != b:
+                out[b] += entry * values[a]
+        return out
 
     def pull(self, load: Array) -> Array:
         """−K_ps K_ss⁻¹ f: loads of the particles that replace those of the nodes, on the left."""

@@ -159,6 +159,9 @@ class Equilibrium:
         self.aside[particles] = True
         if self.start.load[:, self.aside].any():
             raise MechanismError("a part on which a load acts has come loose")
+        surface = self.operator.surface
+        if surface is not None and self.aside[surface.particles].any():
+            raise MechanismError("a part with an extrapolated surface has come loose")
         if self.prescribed.all():
             raise MechanismError("all of the body that was free has come loose")
         self.operator = BondOperator(self.bonds, self.operator.moduli, self.prescribed)

@@ -144,6 +144,26 @@ def test_batches_end_where_single_bonds_end():
         assert np.linalg.norm(run.tip - runs[0].tip) <= scene.m * scene.spacing
 
 
+def test_energies_balance_with_bonds_that_end_at_the_surface():
+    run = fracture.grow(slit(0.4, surface="extrapolated"), 1.0, max_solves=15, tolerance=1e-10)
+    h = run.history
+    assert h.broken[-1] > 10
+    assert np.abs(h.imbalance).max() <= 1e-8 * h.work.max()
+    surface = run.body.operator.surface
+    own = (
+        0.5
+        * float(
+            (
+                run.body.unknowns[:, surface.particles]
+                * surface.force(run.body.unknowns[:, surface.particles])
+            ).sum()
+        )
+        * run.body.start.family.cell
+    )
+    # The balance would see one per cent of what is stored in bonds that end.
+    assert 0.01 * own > 1e-6 * h.stored[-1] / run.factor**2
+
+
 @few
 @given(st.integers(0, 10**6), st.sampled_from(["fixed", "following"]), st.integers(1, 9))
 def test_energies_balance(seed, control, batch):
