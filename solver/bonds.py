@@ -77,6 +77,8 @@ class Bonds:
     broken : ndarray of bool, shape (family size / 2, N), optional
         Bonds, by half offset and particle of origin, that carry nothing. Unlike a crack that was
         always there they make no surface: the bonds that are left are not stiffened.
+    growing : bool
+        Whether cracks are growing: their faces then share no node at the tips.
 
     Raises
     ------
@@ -92,6 +94,7 @@ class Bonds:
         surface: Surface = "none",
         prescribed: Mask | None = None,
         broken: Mask | None = None,
+        growing: bool = False,
     ) -> None:
         self.lattice, self.family, self.surface = lattice, family, surface
         rows, columns = lattice.cells
@@ -138,7 +141,7 @@ class Bonds:
         #: Bonds that end at the surface, if the treatment has any.
         self.ended: EndedBonds | None = None
         if surface == "extrapolated":
-            self.ended = self._end(cracks, cut_at, cut, free, broken is None)
+            self.ended = self._end(cracks, cut_at, cut, free, broken_at, growing)
 
     def breaking(self, offsets: Indices, origins: Indices) -> Bonds:
         """These bonds with some more of them broken; what has not changed is shared.
@@ -169,6 +172,13 @@ class Bonds:
         result.special, result.factors = special, factors
         return result
 
+    def without_ends(self, particles: Indices) -> Bonds:
+        """These bonds less those of some particles that end at the surface."""
+        result = copy(self)
+        if self.ended is not None:
+            result.ended = self.ended.without(particles)
+        return result
+
     def exist(self, particles: Indices) -> Mask:
         """Which neighbours the particles have, shape (family size, particles)."""
         rows, columns = (axis[particles] for axis in self.lattice.cells)
@@ -196,19 +206,27 @@ class Bonds:
         return ~lattice.mask[there] & ~beyond[there]
 
     def _end(
-        self, cracks: Sequence[Crack], cut_at: Indices, cut: Mask, free: Mask, whole: bool
+        self,
+        cracks: Sequence[Crack],
+        cut_at: Indices,
+        cut: Mask,
+        free: Mask,
+        broken_at: Indices,
+        growing: bool,
     ) -> EndedBonds | None:
-        """The bonds that end at a surface which a particle with a free unknown feels.
-
-        `whole` says that no bond is broken: where some are, cracks may be growing.
-        """
+        """The bonds that end at a surface which a particle with a free unknown feels."""
         lattice, family = self.lattice, self.family
         particles = np.union1d(self.short, cut_at)
+        # A particle that has lost all its bonds to others holds no surface.
+        rubble = broken_at[self.factors_of(broken_at).sum(axis=0) == 0]
+        particles = np.setdiff1d(particles, rubble, assume_unique=True)
+        kept = np.isin(cut_at, particles)
+        cut_at, cut = cut_at[kept], cut[:, kept]
         if not free[particles].any():
             return None
         lost = ~self.exist(particles)
         lost[:, np.searchsorted(particles, cut_at)] |= cut
-        outline = Outline.of(lattice.region, cracks, lattice.spacing, joined=whole)
+        outline = Outline.of(lattice.region, cracks, lattice.spacing, joined=not growing)
         free = free[particles]
         ended = EndedBonds.of(lattice, family, outline, particles[free], lost[:, free])
         if free.all():

@@ -149,8 +149,6 @@ class Breakable:
         self.factors: Array = self.whole.copy()
         #: Bonds that must not break, (half, N), or None.
         self.kept: Mask = self._kept(discretisation, no_fail)
-        #: Bonds that end at the surface: they store energy and do not break.
-        self.surface = discretisation.operator.surface
         self._out = np.empty_like(self.factors)
         self._grids = np.zeros((2, 3, int(np.prod(lattice.shape))))
 
@@ -201,19 +199,17 @@ class Breakable:
         return self._out
 
     def stored(self, unknowns: Array, others: Array | None = None) -> float:
-        """Energy of all bonds, J per unit thickness; half the mutual energy of two fields."""
+        """Energy of all bonds between particles, J per unit thickness.
+
+        With `others`, half the mutual energy of the two fields.
+        """
         grid = self._grid(0, unknowns)
         other = grid if others is None else self._grid(1, others)
         out = np.empty(len(self._segments))
         bond_kernels.bond_work(
             grid, other, self._segments, self._steps, self._stored, self.factors, out
         )
-        total = float(out.sum())
-        if self.surface is not None:
-            mine = np.nan_to_num(unknowns[:, self.surface.particles])
-            theirs = mine if others is None else np.nan_to_num(others[:, self.surface.particles])
-            total += 0.5 * self.family.cell * float((theirs * self.surface.force(mine)).sum())
-        return total
+        return float(out.sum())
 
     def energy_of(self, unknowns: Array, bonds: Indices) -> Array:
         """Energy that single bonds hold, J per unit thickness; `bonds` are flat indices."""

@@ -58,10 +58,10 @@ Indices = NDArray[np.int64]
 SHORTEST = 0.1
 # Ratio of pivots below which the nodes' stiffness counts as singular.
 _SINGULAR = 1e-14
+# Order of the entries of diagonal blocks, as the operator has them.
+_ENTRIES = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
 # Turn (rad) of the region's edge that makes a corner.
 _CORNER = 0.2
-# Entries of a diagonal block in the operator's order.
-_ENTRIES = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
 # Particles whose columns are solved for at once.
 _CHUNK = 200
 
@@ -196,6 +196,20 @@ class EndedBonds:
             for name in names
         }
         return replace(self, **both)
+
+    def without(self, particles: Indices) -> EndedBonds | None:
+        """These bonds less those of some particles, None if that leaves none."""
+        kept = ~np.isin(self.particle, particles)
+        if not kept.any():
+            return None
+        names = ("particle", "offset", "edge", "position", "length")
+        fewer: dict[str, Any] = {name: getattr(self, name)[kept] for name in names}
+        left = replace(self, **fewer)
+        if self.chords is not None:
+            touched = np.zeros(len(self.outline.nodes), dtype=bool)
+            touched[self.outline.edges[left.edge]] = True
+            left = replace(left, chords=self.chords.touching(self.outline, touched))
+        return left
 
     def with_chords(self, lattice: Lattice, family: Family) -> EndedBonds:
         """The same with what the body's corners cut out of other bonds."""
@@ -339,37 +353,46 @@ class SurfaceStiffness:
         self.matrix = sparse.csc_array(self.matrix + scale * blocks)
         return splu(self.matrix, **options)
 
+    def energy(self, values: Array, nodal: Array, others: Array, other_nodal: Array) -> float:
+        """Half the mutual energy of two fields, per volume of a particle.
+
+        Parameters
+        ----------
+        values, others : ndarray, shape (components, p)
+        nodal, other_nodal : ndarray, shape (components, s)
+            With `nodal` of the same field twice: its energy.
+        """
+        c = self.components
+        found = float((others * (self.transposed @ nodal.ravel()).reshape(c, -1)).sum())
+        found += float((other_nodal * (self.coupling @ values.ravel()).reshape(c, -1)).sum())
+        found += float((other_nodal * (self.matrix @ nodal.ravel()).reshape(c, -1)).sum())
+        for entry, (a, b) in zip(self.own, _ENTRIES, strict=False):
+            found += float((entry * others[a] * values[b]).sum())
+            if a != b:
+                found += float((entry * others[b] * values[a]).sum())
+        return 0.5 * found
+
     def nodal(self, values: Array, load: Array | None = None) -> Array:
         """Displacements of the nodes for values of the particles, (components, s).
 
         Parameters
         ----------
         values : ndarray, shape (components, p)
-        load : ndarray, shape (components, s), optional
+        load : ndarray, shape (components, nodes of the outline), optional
             Forces on the nodes per volume of a particle.
         """
         force = -(self.coupling @ values.ravel())
         if load is not None:
-            force += load.ravel()
+            force += load[:, self.nodes].ravel()
         return np.asarray(self._factors.solve(force).reshape(self.components, -1))
 
     def reaction(self, values: Array) -> Array:
         """−K_ps K_ss⁻¹ K_sp u: what the nodes do to the particles, both (components, p)."""
         return (self.transposed @ self.nodal(values).ravel()).reshape(values.shape)
 
-    def force(self, values: Array) -> Array:
-        """What displaced particles feel of all ended bonds, their own part and the nodes'."""
-        out = self.reaction(values)
-        pairs = [(a, b) for a, b in _ENTRIES if b < self.components]
-        for entry, (a, b) in zip(self.own, pairs, strict=True):
-            out[a] += entry * values[b]
-            if a != b:
-                out[b] += entry * values[a]
-        return out
-
     def pull(self, load: Array) -> Array:
         """−K_ps K_ss⁻¹ f: loads of the particles that replace those of the nodes, on the left."""
-        nodes = self._factors.solve(load.ravel())
+        nodes = self._factors.solve(load[:, self.nodes].ravel())
         return (self.transposed @ nodes).reshape(self.components, -1)
 
     def condensed(self, basis: sparse.csr_array) -> sparse.csr_array:

@@ -113,6 +113,7 @@ class Equilibrium:
             operator=self.operator,
             values=values,
             load=self.start.load * factor,
+            pull=None if self.start.pull is None else self.start.pull * factor,
             prescribed=self.prescribed,
         )
 
@@ -134,6 +135,31 @@ class Equilibrium:
         )
         now = self.discretisation(factor)
         return Solution(now, now.field(factor * self.x), statistics, self.preconditioner)
+
+    def surface_energy(self, others: Array | None = None) -> float:
+        """Energy of the bonds that end at the surface at unit load, J per unit thickness.
+
+        With `others`, values of all unknowns and zero at the surface's nodes, half the mutual
+        energy of the two fields.
+        """
+        surface = self.operator.surface
+        if surface is None:
+            return 0.0
+        values = np.nan_to_num(self.unknowns[:, surface.particles])
+        nodal = surface.nodal(values, self.start.pull)
+        if others is None:
+            found = surface.energy(values, nodal, values, nodal)
+        else:
+            found = surface.energy(values, nodal, others[:, surface.particles], 0.0 * nodal)
+        return found * self.start.family.cell
+
+    def surface_load_work(self) -> float:
+        """Σ f·u of the loads on the surface's nodes at unit load, J per unit thickness."""
+        surface, pull = self.operator.surface, self.start.pull
+        if surface is None or pull is None:
+            return 0.0
+        nodal = surface.nodal(np.nan_to_num(self.unknowns[:, surface.particles]), pull)
+        return float((pull[:, surface.nodes] * nodal).sum()) * self.start.family.cell
 
     # ---- changes ------------------------------------------------------------------------
 
@@ -157,17 +183,25 @@ class Equilibrium:
         """
         unknowns = self.unknowns
         self.aside[particles] = True
-        if self.start.load[:, self.aside].any():
+        nodes = None if self.operator.surface is None else self.operator.surface.nodes
+        self.bonds = self.bonds.without_ends(particles)
+        if self.start.load[:, self.aside].any() or self._unloaded(nodes):
             raise MechanismError("a part on which a load acts has come loose")
-        surface = self.operator.surface
-        if surface is not None and self.aside[surface.particles].any():
-            raise MechanismError("a part with an extrapolated surface has come loose")
         if self.prescribed.all():
             raise MechanismError("all of the body that was free has come loose")
         self.operator = BondOperator(self.bonds, self.operator.moduli, self.prescribed)
         self.rhs = None
         self.x = unknowns[:, self.operator.active].ravel()
         self.preconditioner = None
+
+    def _unloaded(self, nodes: Indices | None) -> bool:
+        """Whether loads act on nodes at which bonds ended and no longer do."""
+        if nodes is None or self.start.pull is None:
+            return False
+        left = np.zeros(self.start.pull.shape[1], dtype=bool)
+        if self.bonds.ended is not None:
+            left[self.bonds.ended.outline.edges[self.bonds.ended.edge]] = True
+        return bool(self.start.pull[:, nodes[~left[nodes]]].any())
 
     def slack(self) -> Indices:
         """Particles whose own bonds leave them a motion without stiffness."""

@@ -16,23 +16,20 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import crack_path, restart
-from .bonds import Bonds
 from .breaking import TIE, Breakable, Criterion, Critical, next_batch
 from .conditions import Where
 from .crack_path import CrackPath
 from .equilibrium import Equilibrium
 from .errors import ConvergenceError, MechanismError, NegativeCurvatureError, SceneError
 from .ledger import History, Ledger
-from .operators import BondOperator
 from .programme import Programme
-from .scene import Discretisation, Scene
+from .scene import Scene
 from .solution import Solution
 
 Array = NDArray[np.float64]
@@ -74,9 +71,7 @@ class Growth:
         max_iterations: int,
         monitors: Mapping[str, Callable[[Growth], float]],
     ) -> None:
-        start = scene.discretise()
-        if start.operator.surface is not None:
-            start = _parted(start)
+        start = scene.discretise(growing=True)
         self.scene, self.programme, self.reason = scene, programme, ""
         self.bonds = Breakable(start, toughness, no_fail, tension_only, criterion)
         self.batch = _batch_size(batch, start.family.offsets)
@@ -440,33 +435,6 @@ def grow(
     if checkpoint is not None:
         restart.save(run, checkpoint, mark)
     return run
-
-
-def _parted(start: Discretisation) -> Discretisation:
-    """The same body with surfaces that do not hold its cracks together at their tips.
-
-    Raises
-    ------
-    SceneError
-        If tractions act on the nodes of its surface.
-    """
-    if start.pull is not None and start.pull.any():
-        raise SceneError(
-            "fracture does not know tractions on surface='extrapolated' yet: use surface='volume'"
-        )
-    scene, lattice = start.scene, start.lattice
-    if scene.broken is not None:
-        return start
-    bonds = Bonds(
-        lattice,
-        start.family,
-        scene.cracks,
-        scene.surface,
-        np.logical_and.reduce(start.prescribed, axis=0),
-        np.zeros((start.family.size // 2, lattice.count), dtype=bool),
-    )
-    operator = BondOperator(bonds, start.moduli, start.prescribed)
-    return replace(start, bonds=bonds, operator=operator, pull=None)
 
 
 def _batch_size(batch: int | None, offsets: NDArray[np.int64]) -> int:

@@ -40,7 +40,8 @@ class Ledger:
         """Σ f·u Δv of the loads at unit load, prescribed unknowns left out."""
         start = self.body.start
         free = np.where(self.body.prescribed, 0.0, start.load)
-        return float((free * np.nan_to_num(self.body.unknowns)).sum()) * start.family.cell
+        found = float((free * np.nan_to_num(self.body.unknowns)).sum()) * start.family.cell
+        return found + self.body.surface_load_work()
 
     def _support_work(self) -> float:
         """Σ R·u Δv of the supports at unit load.
@@ -49,7 +50,12 @@ class Ledger:
         the field that is the prescribed values and zero elsewhere.
         """
         prescribed = np.where(self.body.start.prescribed, self.body.start.values, 0.0)
-        return 2.0 * self.bonds.stored(self.body.unknowns, prescribed)
+        bonds = self.bonds.stored(self.body.unknowns, prescribed)
+        return 2.0 * (bonds + self.body.surface_energy(prescribed))
+
+    def _stored(self) -> float:
+        """Energy of all bonds at unit load."""
+        return self.bonds.stored(self.body.unknowns) + self.body.surface_energy()
 
     def move(self, before: float, after: float) -> None:
         """The load factor changes while no bond breaks."""
@@ -81,7 +87,7 @@ class Ledger:
             "force": factor * self._support_work(),
             "displacement": factor * self.deflection,
             "work": self.work,
-            "stored": factor**2 * self.bonds.stored(self.body.unknowns),
+            "stored": factor**2 * self._stored(),
             "dissipated": self.dissipated,
             "excess": self.excess,
         }

@@ -36,6 +36,8 @@ def fingerprint(run: Growth) -> str:
         start.prescribed,
         start.values,
         start.load,
+        start.pull,
+        start.scene.surface,
         bonds.whole,
         bonds.critical,
         bonds.kept,

@@ -138,14 +138,20 @@ class Scene:
         """The family of a bulk particle."""
         return Family(self.m, self.spacing, self.area_rule, influence(self.influence))
 
-    def discretise(self) -> Discretisation:
+    def discretise(self, growing: bool = False) -> Discretisation:
         """Check the scene and turn it into arrays and operators.
+
+        Parameters
+        ----------
+        growing : bool
+            Whether cracks are to grow: then the faces of those that exist share no node at their
+            tips (`solver.outline`).
 
         Raises
         ------
         SceneError, CalibrationError, InadmissibleMaterialError
         """
-        return Discretisation.of(self)
+        return Discretisation.of(self, growing)
 
     def solve(self, tolerance: float = 1e-10, **options: Any) -> Solution:
         """Static (or steady) solution; see `solver.statics.solve`."""
@@ -168,7 +174,7 @@ class Discretisation:
         Prescribed values (rotations times the spacing), zero where free, NaN where set aside.
     load : ndarray, shape (components, N)
         Densities of force, couple over spacing, or source.
-    pull : ndarray, shape (components, surface nodes), optional
+    pull : ndarray, shape (components, nodes of the outline), optional
         Loads of the surface's nodes, per volume of a particle.
     seconds : float
         Wall time that building all this took.
@@ -188,7 +194,7 @@ class Discretisation:
     seconds: float
 
     @classmethod
-    def of(cls, scene: Scene) -> Discretisation:
+    def of(cls, scene: Scene, growing: bool = False) -> Discretisation:
         """Build it, cheap checks first."""
         begun = perf_counter()
         family = scene.family()
@@ -200,12 +206,13 @@ class Discretisation:
             components = 2 if stability.sign == "central" else 3
         prescribed, values = _supports(scene, lattice, components)
         load = _loads(scene, lattice, components)
-        pulls = _edge_loads(scene, lattice)
+        growing = growing or scene.broken is not None
+        pulls = _edge_loads(scene, lattice, growing)
         broken = scene.broken(lattice, family) if scene.broken else None
         held = np.logical_and.reduce(prescribed, axis=0)
         aside = np.zeros(lattice.count, dtype=bool)
         while True:
-            bonds = Bonds(lattice, family, scene.cracks, scene.surface, held, broken)
+            bonds = Bonds(lattice, family, scene.cracks, scene.surface, held, broken, growing)
             operator = BondOperator(bonds, moduli, prescribed)
             loose, why = mechanisms.find(
                 bonds,
@@ -317,12 +324,12 @@ def _loads(scene: Scene, lattice: Lattice, components: int) -> Array:
     return load
 
 
-def _edge_loads(scene: Scene, lattice: Lattice) -> list[Quadrature]:
+def _edge_loads(scene: Scene, lattice: Lattice, growing: bool) -> list[Quadrature]:
     """Loads on the body's edges, evaluated."""
     edges = [item.edge for item in scene.loads if item.edge is not None]
     if not edges:
         return []
-    outline = Outline.of(lattice.region, scene.cracks, lattice.spacing, scene.broken is None)
+    outline = Outline.of(lattice.region, scene.cracks, lattice.spacing, not growing)
     return [edge(outline) for edge in edges]
 
 
@@ -331,20 +338,22 @@ def _share_out(
 ) -> Array | None:
     """Give loads on edges to the surface's nodes, or to the nearest particles (into `load`).
 
-    Returns the nodes' loads, shape (components, nodes), or None if the surface has no nodes.
+    Returns the loads of the outline's nodes, (components, nodes), None if no bond ends at them.
     """
     surface = operator.surface
-    nodal = None if surface is None else np.zeros((load.shape[0], len(surface.nodes)))
+    nodal = None
+    if surface is not None:
+        nodal = np.zeros((load.shape[0], len(surface.ended.outline.nodes)))
     for rule in pulls:
         force = rule.force.T / lattice.spacing**2
         ends = rule.outline.edges[rule.edge].T
         share = np.stack([1 - rule.position, rule.position])
-        known = np.full(len(rule.outline.nodes), -1)
+        known = np.zeros(len(rule.outline.nodes), dtype=bool)
         if surface is not None:
-            known[surface.nodes] = np.arange(len(surface.nodes))
-        felt = known[ends].min(axis=0) >= 0
+            known[surface.nodes] = True
+        felt = known[ends].all(axis=0)
         if nodal is not None:
-            for node, part in zip(known[ends], share, strict=True):
+            for node, part in zip(ends, share, strict=True):
                 for component, values in enumerate(force):
                     np.add.at(nodal[component], node[felt], (part * values)[felt])
         # Edges without nodes: no treatment that has any, or held particles behind them.

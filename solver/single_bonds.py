@@ -67,7 +67,7 @@ def grow_singly(
     SceneError
         If the body has more than 6,000 unknowns.
     """
-    parts = replace(scene, loose="drop").discretise()
+    parts = replace(scene, loose="drop").discretise(growing=True)
     if parts.operator.shape[0] > _LARGEST:
         raise SceneError(f"an exact run is for at most {_LARGEST} unknowns")
     critical = critical_energies(toughness, parts.family)
