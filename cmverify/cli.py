@@ -161,21 +161,29 @@ def solve(
         Path | None, typer.Option(help="Path of the fields without suffix; the scene's name.")
     ] = None,
 ) -> None:
-    """Solve a scene file and write its fields as .vtu and .npz."""
+    """Solve a scene file, or let its cracks grow, and write its fields as .vtu and .npz."""
     from rich.console import Console
 
-    from cmverify import scene_file
+    from cmverify import fracture_file, scene_file
     from cmverify.export import write_arrays
 
+    base = out or scene.with_suffix("")
+    paths: tuple[Path, ...]
     try:
         described, options = scene_file.read(scene)
-        solution = described.solve(**options)
+        plan = scene_file.read_fracture(scene)
+        if plan is None:
+            solution = described.solve(**options)
+            said = solution.statistics.as_dict()
+            paths = write_arrays(solution.points, scene_file.fields(solution), base)
+        else:
+            run = plan.run(described)
+            said = fracture_file.summary(run)
+            paths = fracture_file.write(run, scene_file.fields(run.solution), base)
     except (ValueError, RuntimeError) as error:
         _refuse(str(error))
-    base = out or scene.with_suffix("")
-    paths = write_arrays(solution.points, scene_file.fields(solution), base)
     console = Console()
-    for name, value in solution.statistics.as_dict().items():
+    for name, value in said.items():
         console.print(
             f"{name.replace('_', ' '):<16}{value:.4g}"
             if isinstance(value, float)

@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cmverify import fracture_file
 from cmverify.expressions import Formula
+from cmverify.fracture_file import Plan
 
 if TYPE_CHECKING:
     from solver import Crack, Load, Region, Scene, Solution, Support
@@ -43,6 +45,7 @@ LOADS = {
     "flux": {"value", "where"},
 }
 SECTIONS = {"title", "discretisation", "region", "material", "support", "load", "crack", "solve"}
+SECTIONS |= {"fracture"}
 
 
 class SceneFileError(ValueError):
@@ -133,6 +136,30 @@ def read(path: Path) -> tuple[Scene, dict[str, Any]]:
     solve = data.get("solve", {})
     _known(source, "solve", solve, {"tolerance"})
     return scene, solve
+
+
+def read_fracture(path: Path) -> Plan | None:
+    """The [fracture] table of a scene file, or None if it has none.
+
+    Raises
+    ------
+    SceneFileError
+        As `read`.
+    """
+    text = path.read_text()
+    table = tomllib.loads(text).get("fracture")
+    if table is None:
+        return None
+    source = _Source(path, text)
+    _known(source, "fracture", table, fracture_file.KEYS)
+    try:
+        return fracture_file.plan(
+            table, lambda key, value: _formula(source, "fracture", key, value)
+        )
+    except SceneFileError:
+        raise
+    except (ValueError, TypeError) as error:
+        raise source.error("fracture", str(error)) from error
 
 
 def fields(solution: Solution) -> dict[str, np.ndarray]:

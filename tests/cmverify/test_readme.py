@@ -39,3 +39,12 @@ def test_commands_of_the_readme_exist():
 @pytest.mark.parametrize("link", re.findall(r'src="([^"]+)"', TEXT))
 def test_figures_of_the_readme_are_there_and_small(link):
     assert 0 < (ROOT / link).stat().st_size < 300_000
+
+
+def test_the_crack_of_the_readme_grows():
+    (code,) = [block for block in blocks("python") if "fracture.grow" in block]
+    names: dict = {}
+    exec(code, names)
+    run = names["run"]
+    assert run.advance >= 6
+    assert abs(run.history.imbalance).max() < 1e-6 * run.history.work.max()

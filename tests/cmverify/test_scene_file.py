@@ -4,8 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 from cmverify import scene_file
+from cmverify.cli import app
 from cmverify.expressions import Formula
 from cmverify.scene_file import SceneFileError
 
@@ -118,3 +120,42 @@ def test_formulas_compute_what_they_say():
 def test_formulas_run_no_code(text):
     with pytest.raises(ValueError, match=r"unknown name|not allowed"):
         Formula(text)
+
+
+def test_a_fracture_table_is_run_and_written(tmp_path):
+    text = (EXAMPLES / "double_cantilever.toml").read_text()
+    text = text.replace("spacing = 0.05", "spacing = 0.1").replace("advance = 0.5", "advance = 0.3")
+    path = written(tmp_path, text)
+    result = CliRunner().invoke(app, ["solve", str(path)])
+    assert result.exit_code == 0, result.output
+    assert "bonds broken" in result.output
+    history = np.genfromtxt(tmp_path / "scene.history.csv", delimiter=",", names=True)
+    assert history["advance"][-1] >= 0.3
+    balance = history["work"] - history["stored"] - history["dissipated"] - history["excess"]
+    assert np.abs(balance).max() < 1e-6 * history["work"].max()
+    track = np.loadtxt(tmp_path / "scene.path.csv", delimiter=",", skiprows=1)
+    # The body is symmetric: the crack runs straight on from its tip.
+    np.testing.assert_allclose(track[0], [-1.0, 0.0])
+    np.testing.assert_allclose(track[:, 1], 0.0, atol=1e-9)
+    assert np.load(tmp_path / "scene.npz")["damage"].max() > 0.2
+
+
+def test_scenes_without_a_fracture_table_have_no_plan(tmp_path):
+    assert scene_file.read_fracture(written(tmp_path, SMALL)) is None
+
+
+@pytest.mark.parametrize(
+    ("table", "line", "message"),
+    [
+        ("G = 1.0", 2, "did you mean 'G"),
+        ("control = 'fixed'", 1, "'G1' .* is missing"),
+        ("G1 = -1.0", 1, "must be positive"),
+        ("G1 = 1.0\nstop = -2.0", 1, "stops at"),
+        ("G1 = 1.0\nno_fail = 'q > 1'", 3, "q"),
+    ],
+)
+def test_fracture_tables_that_make_no_sense(tmp_path, table, line, message):
+    path = written(tmp_path, f"{SMALL}\n[fracture]\n{table}\n")
+    at = SMALL.count("\n") + 1 + line
+    with pytest.raises(SceneFileError, match=rf"scene\.toml:{at}: \[fracture\] .*{message}"):
+        scene_file.read_fracture(path)
