@@ -31,6 +31,7 @@ QUANTITIES = {
     "largest": "largest such deviation, degrees",
     "rms hoop": "root mean square deviation from the hoop-stress criterion, degrees",
     "largest hoop": "largest such deviation, degrees",
+    "rms apart": "how far the two criteria are from each other, root mean square, degrees",
     "rms near": "as rms, the line fitted up to a/10 only: the K-field at the edge is held fixed "
     "while the crack grows, which matters less there",
     "rms chord": "as rms, from the chord between old and new tip instead of a fitted line",

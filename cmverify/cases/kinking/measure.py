@@ -67,6 +67,7 @@ def study(plan: Study, n: int) -> Measurement:
         "largest": float(np.abs(read - energy).max()),
         "rms hoop": rms(read - hoop),
         "largest hoop": float(np.abs(read - hoop).max()),
+        "rms apart": rms(hoop - energy),
         "rms near": rms(near - energy),
         "rms chord": rms(chord - energy),
         "drive": float(np.median([drive(g) for g in grown])),
