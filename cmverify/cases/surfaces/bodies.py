@@ -1,0 +1,203 @@
+"""What the cases of free surfaces share: treatments, point supports, edges, and their checks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cache, partial
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from cmverify.case import Array, Check, Level, Measurement, Method, OrderBand
+from cmverify.norms import relative_l2
+
+if TYPE_CHECKING:
+    from solver import Support
+
+Treatment = Literal["none", "volume", "extrapolated"]
+TREATMENTS: tuple[Treatment, ...] = ("none", "volume", "extrapolated")
+#: Enough of them to fit an order: how an edge cuts the cells differs from one to the next.
+LADDER = {
+    Level.QUICK: (20,),
+    Level.STANDARD: (20, 30, 50),
+    Level.PAPER: (20, 30, 40, 50, 70, 100),
+}
+TOLERANCE = 1e-11
+SOURCE = "issue D, cases"
+
+
+def nearest(x0: float, y0: float) -> Callable[[Array, Array], np.ndarray]:
+    """A selection of the one particle that is nearest to a point."""
+
+    def where(x: Array, y: Array) -> np.ndarray:
+        chosen = np.zeros(len(x), dtype=bool)
+        chosen[np.argmin(np.hypot(x - x0, y - y0))] = True
+        return chosen
+
+    return where
+
+
+def zero(x: Array, y: Array) -> Array:
+    """No displacement."""
+    return np.zeros((*np.shape(x), 2))
+
+
+def held(
+    first: tuple[float, float],
+    second: tuple[float, float],
+    displacement: Callable[[Array, Array], Array] = zero,
+) -> list[Support]:
+    """Three components held at two particles, at exact values: rigid motion and nothing else.
+
+    Loads in equilibrium leave these supports without reaction, so that they disturb nothing.
+    The second lies to the right of the first.
+    """
+    from solver import Support
+
+    def component(i: int) -> Callable[[Array, Array], Array]:
+        return lambda x, y: displacement(x, y)[..., i]
+
+    return [
+        Support.where(nearest(*first), u1=component(0), u2=component(1)),
+        Support.where(nearest(*second), u2=component(1)),
+    ]
+
+
+@cache
+def warm_up(treatment: Treatment, conductive: bool = False) -> None:
+    """Compile what a treatment needs, below and above the 2,000 unknowns of direct solvers."""
+    from solver import ConductivityTensor, ElasticTensor, Load, Scene, Support, rectangle
+
+    for n in (10, 48 if conductive else 28):
+        common: dict[str, Any] = {
+            "region": rectangle(1.0, 1.0),
+            "spacing": 1.0 / n,
+            "surface": treatment,
+        }
+        if conductive:
+            Scene(
+                material=ConductivityTensor.isotropic(1.0),
+                supports=[Support.where(nearest(0.0, 0.0), temperature=0.0)],
+                loads=[Load.flux((1.0, 0.0))],
+                **common,
+            ).solve()
+        else:
+            Scene(
+                material=ElasticTensor.isotropic(1.0, 0.2),
+                supports=held((0.0, 0.0), (0.25, 0.0)),
+                loads=[Load.stress((1.0, 0.0, 0.0))],
+                **common,
+            ).solve()
+
+
+def at_points(
+    points: Array, values: Array, targets: Array, spacing: float, cells: float = 3.2
+) -> Array:
+    """Values at points of the edge, by a quadratic least-squares fit of the particles near each.
+
+    Parameters
+    ----------
+    points : (N, 2)
+    values : (N,) or (N, c)
+    targets : (k, 2)
+    spacing : float
+    cells : float
+        Radius of the neighbourhood. Half of it lies in the body: some 16 particles for 6 terms.
+
+    Returns
+    -------
+    ndarray, (k,) or (k, c)
+
+    Raises
+    ------
+    ValueError
+        If a neighbourhood holds fewer than eight particles.
+    """
+    from scipy.spatial import KDTree
+
+    found = []
+    for target, near in zip(
+        targets, KDTree(points).query_ball_point(targets, cells * spacing), strict=True
+    ):
+        if len(near) < 8:
+            raise ValueError(f"too few particles near ({target[0]:g}, {target[1]:g})")
+        x, y = ((points[near] - target) / spacing).T
+        system = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=1)
+        found.append(np.linalg.lstsq(system, values[near], rcond=None)[0][0])
+    return np.array(found)
+
+
+def without_rigid_motion(points: Array, displacement: Array) -> Array:
+    """Displacements (k, 2) less their mean and their mean rotation about the points' centre."""
+    arm = points - points.mean(axis=0)
+    u = displacement - displacement.mean(axis=0)
+    spin = np.sum(arm[:, 0] * u[:, 1] - arm[:, 1] * u[:, 0]) / np.sum(arm**2)
+    rigid = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
+    return np.asarray(u - spin * rigid)
+
+
+def displacement_errors(points: Array, computed: Array, exact: Array) -> dict[str, float]:
+    """Relative L2 error and largest error over the largest displacement, rigid motion aside.
+
+    Loads determine displacements up to a rigid motion; what the supports make of it depends on
+    where they sit, so that its mean is taken from both fields.
+    """
+    computed, exact = (without_rigid_motion(points, u) for u in (computed, exact))
+    largest = np.linalg.norm(computed - exact, axis=1).max() / np.linalg.norm(exact, axis=1).max()
+    return {"displacement": relative_l2(computed, exact), "largest": float(largest)}
+
+
+def symmetric(stress: Array) -> Array:
+    """Stress (N, 3) as s11, s22, s12 of a recovered (N, 2, 2)."""
+    shear = 0.5 * (stress[:, 0, 1] + stress[:, 1, 0])
+    return np.stack([stress[:, 0, 0], stress[:, 1, 1], shear], axis=-1)
+
+
+def methods(
+    run: Callable[[Treatment, float, int], Measurement],
+    ladder: Mapping[Level, tuple[int, ...]] = LADDER,
+    m: float = 5,
+    other: float | None = 3,
+    conductive: bool = False,
+) -> tuple[Method, ...]:
+    """The three treatments at the case's m, and ``extrapolated`` at another m too."""
+    settings = [(t, m, f"bond/{t}") for t in TREATMENTS]
+    if other is not None:
+        settings.append(("extrapolated", other, f"bond/extrapolated, m = {other:g}"))
+    return tuple(
+        Method(
+            name,
+            "bond",
+            partial(run, treatment, cells),
+            ladder,
+            partial(warm_up, treatment, conductive),
+        )
+        for treatment, cells, name in settings
+    )
+
+
+def converging(
+    quantity: str, bounds: dict[int, float], least: float = 1.5, most: float = 2.5
+) -> Check:
+    """The check of the extrapolated treatment: bounds, and an order fitted to the whole ladder.
+
+    Bounds are what was measured with room for half as much again, all below the issue's 0.3 %
+    (homogeneous strain) and 0.5 % at 100 cells. The order asked for is 1.5; `least` is less where
+    an oblique or round edge cuts the cells differently at every spacing, so that errors scatter
+    about their trend.
+    """
+    return Check(
+        "bond/extrapolated",
+        quantity,
+        bounds,
+        order=OrderBand(least, most, floor=1e-11, fitted=True),
+        source=SOURCE,
+    )
+
+
+def statistics_of(solution: Any) -> dict[str, float | int | str]:
+    """Columns of the method table, and what surfaces cost."""
+    from cmverify import adapters
+
+    found = adapters.solver_statistics(solution.statistics)
+    return {**found, "bond factors (bytes)": solution.discretisation.bonds.nbytes}
