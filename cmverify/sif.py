@@ -73,7 +73,7 @@ def interaction_integral(
     Raises
     ------
     ValueError
-        If the ring is thinner than four cells, reaches nearer to the tip than a horizon, or
+        If the ring is thinner than three cells, reaches nearer to the tip than a horizon, or
         leaves the body.
     """
     from references.analytic.interaction import intensities
@@ -217,9 +217,9 @@ def _ring(
         raise ValueError("an integration ring needs a finite tip and 0 < inner < outer radius")
     spacing = solution.spacing
     horizon = solution.scene.m * spacing
-    if outer - inner < 4 * spacing or inner < horizon:
+    if outer - inner < 3 * spacing or inner < horizon:
         raise ValueError(
-            f"the ring from {inner:g} to {outer:g} m must be at least four cells wide and stay a "
+            f"the ring from {inner:g} to {outer:g} m must be at least three cells wide and stay a "
             f"horizon ({horizon:g} m) away from the tip: refine the lattice or widen the ring"
         )
     points = solution.points - np.asarray(tip, dtype=float)
