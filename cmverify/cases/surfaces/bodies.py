@@ -177,20 +177,24 @@ def methods(
 
 
 def converging(
-    quantity: str, bounds: dict[int, float], least: float = 1.5, most: float = 2.5
+    quantity: str,
+    bounds: dict[int, float],
+    least: float = 1.5,
+    most: float = 2.6,
+    floor: float = 1e-11,
 ) -> Check:
     """The check of the extrapolated treatment: bounds, and an order fitted to the whole ladder.
 
     Bounds are what was measured with room for half as much again, all below the issue's 0.3 %
     (homogeneous strain) and 0.5 % at 100 cells. The order asked for is 1.5; `least` is less where
-    an oblique or round edge cuts the cells differently at every spacing, so that errors scatter
-    about their trend.
+    an oblique edge cuts the cells differently at every spacing, so that errors scatter about
+    their trend. Below `floor` an error counts as none.
     """
     return Check(
         "bond/extrapolated",
         quantity,
         bounds,
-        order=OrderBand(least, most, floor=1e-11, fitted=True),
+        order=OrderBand(least, most, floor=floor, fitted=True),
         source=SOURCE,
     )
 

@@ -194,12 +194,12 @@ _EDGE = {
 
 #: At 20, 50 and 100 cells across, and the least order.
 BOUNDS: dict[tuple[Shape, str], tuple[dict[int, float], float]] = {
-    ("disc", "isotropic"): ({20: 2.4e-2, 50: 4e-3, 100: 1.1e-3}, 1.5),
-    ("disc", "orthotropic"): ({20: 2.4e-2, 50: 4.5e-3, 100: 1.4e-3}, 1.5),
-    ("disc", "anisotropic"): ({20: 2.6e-2, 50: 4.5e-3, 100: 1.2e-3}, 1.5),
-    ("hole", "isotropic"): ({20: 2.1e-2, 50: 3e-3, 100: 2.5e-3}, 1.3),
-    ("hole", "orthotropic"): ({20: 6e-2, 50: 1.2e-2, 100: 5e-3}, 1.3),
-    ("hole", "anisotropic"): ({20: 2.2e-2, 50: 3.3e-3, 100: 2.5e-3}, 1.3),
+    ("disc", "isotropic"): ({20: 2.3e-2, 50: 3.5e-3, 100: 1e-3}, 1.5),
+    ("disc", "orthotropic"): ({20: 2.4e-2, 50: 4.1e-3, 100: 1.2e-3}, 1.5),
+    ("disc", "anisotropic"): ({20: 2.5e-2, 50: 4e-3, 100: 1.1e-3}, 1.5),
+    ("hole", "isotropic"): ({20: 2.1e-2, 50: 3.5e-3, 100: 6e-4}, 1.5),
+    ("hole", "orthotropic"): ({20: 6e-2, 50: 6e-3, 100: 2.6e-3}, 1.5),
+    ("hole", "anisotropic"): ({20: 2.2e-2, 50: 6.1e-3, 100: 8e-4}, 1.5),
 }
 
 
