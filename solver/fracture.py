@@ -232,15 +232,14 @@ class Growth:
     def _follow(self, utilisation: Array) -> None:
         """Break the next batch at the load that just overloads all of it."""
         batch, load = next_batch(utilisation, 0.0, self.batch)
-        if not len(batch):
-            self.reason = "no load breaks another bond"
-            return
-        event = 1.0 / float(np.sqrt(load.min()))
-        if event > self.programme.stop:
-            self._move(self.programme.stop)
+        event = 1.0 / float(np.sqrt(load.min())) if len(batch) else np.inf
+        if event > self.programme.stop or not len(batch):
+            self._drop(self.body.loose())
+            if np.isfinite(self.programme.stop):
+                self._move(self.programme.stop)
             self.resting = True
             self.record()
-            self.reason = "the programme is done"
+            self.reason = "the programme is done" if len(batch) else "no load breaks another bond"
             return
         self._move(max(event, self.programme.start))
         self.resting = True
@@ -348,7 +347,9 @@ def grow(
         negative bond stiffness.
     batch : int, optional
         Most bonds to break between two equilibria (ties are broken together). By default a fifth
-        of what a straight cut breaks per cell of its length: 22 at m = 5.
+        of what a straight cut breaks per cell of its length: 22 at m = 5. Under a fixed load it
+        makes no difference to loads and paths; a load that follows the crack must overload all
+        of a batch and is the higher for larger ones.
     tolerance : float
         Relative residual of every equilibrium.
     max_iterations : int

@@ -139,7 +139,7 @@ def test_batches_end_where_single_bonds_end():
     ]
     peaks = [run.history.factor.max() for run in runs]
     # A family of 20 bonds and 3 cells of growth: the coarsest body there is.
-    np.testing.assert_allclose(peaks, peaks[0], rtol=0.02)
+    np.testing.assert_allclose(peaks, peaks[0], rtol=0.01)
     for run in runs[1:]:
         assert np.linalg.norm(run.tip - runs[0].tip) <= scene.m * scene.spacing
 
@@ -371,3 +371,22 @@ def test_adaptive_increments_keep_the_overload():
     assert Programme(overload=0.21).reach(1.0, 9.0) == pytest.approx(1.1)
     assert Programme(increment=1.0).reach(1.3, 9.0) == 2.0
     assert Programme(increment=1.0).reach(1.3, 1.6) == 1.6
+
+
+@pytest.mark.parametrize("control", ["fixed", "following"])
+def test_a_part_that_both_its_ligaments_leave_is_set_aside(control):
+    """A bar with two equal notches: the piece between them comes loose."""
+    supports = [
+        Support.where(lambda x, y: x < 2, displacement=(-1.0, 0.0), rotation=0.0),
+        Support.where(lambda x, y: x > 12, displacement=(1.0, 0.0), rotation=0.0),
+    ]
+    cracks = [Crack((x, y), (x, y + side * 3)) for x in (4, 10) for y, side in ((1, -1), (3, 1))]
+    scene = Scene(block(14, 4), 1.0, SOFT, m=2, supports=supports, cracks=cracks, surface="none")
+    run = fracture.grow(scene, 1.0, Programme(control=control, stop=1e3), tolerance=1e-11)
+    x = run.solution.points[:, 0]
+    np.testing.assert_array_equal(run.loose, (x > 4) & (x < 10))
+    assert np.isnan(run.solution.displacement[run.loose]).all()
+    assert np.isfinite(run.solution.displacement[~run.loose]).all()
+    h = run.history
+    assert h.stored[-1] == pytest.approx(0.0, abs=1e-6 * h.work.max())
+    assert np.abs(h.imbalance).max() <= 1e-8 * h.work.max()

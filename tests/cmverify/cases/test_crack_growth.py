@@ -87,5 +87,4 @@ def test_levels_name_what_they_measure():
         "isotropic 45°",
         "bone 45°",
         "isotropic 0° m=3",
-        "isotropic 0° m=7",
     }
