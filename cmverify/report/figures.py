@@ -120,7 +120,7 @@ def line_plot(
         axis.set_xlabel(line.xlabel)
         axis.set_ylabel(line.ylabel)
         axis.set_title(line.title)
-        if len(curves) > 5:
+        if len(curves) > 5 or line.over_methods:
             _legend_below(axis)
         else:
             axis.legend(loc="best")

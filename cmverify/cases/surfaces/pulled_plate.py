@@ -13,7 +13,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from cmverify import adapters
-from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measurement
+from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measurement, OrderBand
 from cmverify.cases.surfaces import bodies
 from cmverify.cases.surfaces.bodies import Treatment
 from cmverify.cases.surfaces.round import hoop_stress
@@ -158,8 +158,24 @@ CASES = (
             {Level.QUICK: (5,), Level.STANDARD: (5, 10, 20), Level.PAPER: (5, 10, 20, 40)},
         ),
         checks=(
-            Check("bond/extrapolated", "edge displacement", {20: 0.01}, source=bodies.SOURCE),
-            Check("bond/extrapolated", "section stress", {20: 0.02}, source=bodies.SOURCE),
+            # 1 % and 2 % at 20 cells per radius are the issue's; 0.23 % and 1.94 % were reached.
+            Check(
+                "bond/extrapolated",
+                "edge displacement",
+                {20: 4e-3, 40: 1.5e-3},
+                source=bodies.SOURCE,
+            ),
+            Check(
+                "bond/extrapolated", "section stress", {20: 0.02, 40: 0.01}, source=bodies.SOURCE
+            ),
+            # A family at the edge averages over its half disc: first order.
+            Check(
+                "bond/extrapolated",
+                "hoop stress",
+                {20: 0.14, 40: 0.07},
+                order=OrderBand(0.7, 1.5, since=20),
+                source="measured",
+            ),
         ),
         quantities={
             "edge displacement": "relative L2 difference of the hole's edge from finite elements",
