@@ -1,5 +1,10 @@
 """The fracture engine: by hand on one and two bonds, then against the exact reference."""
 
+import os
+import signal
+import subprocess
+import sys
+
 import numba
 import numpy as np
 import pytest
@@ -389,4 +394,40 @@ def test_a_part_that_both_its_ligaments_leave_is_set_aside(control):
     assert np.isfinite(run.solution.displacement[~run.loose]).all()
     h = run.history
     assert h.stored[-1] == pytest.approx(0.0, abs=1e-6 * h.work.max())
+    assert np.abs(h.imbalance).max() <= 1e-8 * h.work.max()
+
+
+def test_a_killed_run_goes_on(tmp_path):
+    """Killed for good in the middle of a solve's aftermath, between two checkpoints."""
+    path = tmp_path / "run.npz"
+    script = f"""
+import os, signal
+from solver import fracture
+from tests.solver.test_fracture import slit
+
+def until(run):
+    if len(run.steps) == 17:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+fracture.grow(slit(0.5), 1.0, max_solves=24, until=until, checkpoint={str(path)!r}, every=5)
+"""
+    killed = subprocess.run([sys.executable, "-c", script], check=False, cwd=os.getcwd())
+    assert killed.returncode == -signal.SIGKILL
+    with np.load(path) as file:
+        assert 10 <= len(file["steps"]) < 17
+    later = fracture.grow(slit(0.5), 1.0, max_solves=24, checkpoint=path)
+    whole = fracture.grow(slit(0.5), 1.0, max_solves=24)
+    np.testing.assert_array_equal(later.body.x, whole.body.x)
+    np.testing.assert_array_equal(later.breaks, whole.breaks)
+    np.testing.assert_array_equal(later.history.array, whole.history.array)
+
+
+def test_indefinite_bodies_break_by_the_energy_of_stretch():
+    soft = ElasticTensor.isotropic(1.0, 0.45).voigt
+    with pytest.raises(SceneError, match="negative shear stiffness"):
+        fracture.grow(plate(soft), 1.0, max_solves=3)
+    run = fracture.grow(plate(soft), 1.0, criterion="axial", max_solves=8, tolerance=1e-10)
+    h = run.history
+    assert run.body.sign == "indefinite"
+    assert len(run.broken_bonds) >= 3
     assert np.abs(h.imbalance).max() <= 1e-8 * h.work.max()
