@@ -33,12 +33,15 @@ class Study:
         Whose mixity and spacing are replaced.
     extra : bool
         Also grow the mirrored crack, and keep fields and curves for the report.
+    mixities : tuple of float
+        α_K, degrees; fewer on coarse grids.
     shift : float
         Added to every angle that is read, degrees (for tests).
     """
 
     kink: Kink
     extra: bool = False
+    mixities: tuple[float, ...] = ANGLES
     shift: float = 0.0
 
 
@@ -50,7 +53,7 @@ def rms(values: Sequence[float]) -> float:
 def study(plan: Study, n: int) -> Measurement:
     """Grow the kinks at spacing a/n and compare their angles with both criteria."""
     material = plan.kink.material
-    mixities = FEW if n <= COARSE else ANGLES
+    mixities = FEW if n <= COARSE else plan.mixities
     grown: list[Grown] = []
     seconds = []
     for mixity in mixities:

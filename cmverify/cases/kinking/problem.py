@@ -1,9 +1,11 @@
 """A crack in an anisotropic disc that grows under a mixed-mode K-field (Sect. 3.1.1, Figs. 24–27).
 
 A disc of radius a with a crack to its centre carries the displacement and rotation of the
-asymptotic field in a layer at its edge. The load follows the crack: it is always what the
-weakest bonds bear. All directions are measured from the crack's, whatever its angle to the
-lattice. The toughness is the same in all directions, as in the paper. Units: a = 1, GPa, G = 1.
+asymptotic field in a layer at its edge. The load follows the crack: it is what the weakest bond
+of the batch that breaks can bear, so that a batch of one bond goes along the equilibrium path and
+a larger one overdrives the crack. All directions are measured from the crack's, whatever its angle
+to the lattice. The toughness is the same in all directions, as in the paper. Units: a = 1, GPa,
+G = 1.
 """
 
 from __future__ import annotations
@@ -48,6 +50,9 @@ class Kink:
     surface : "none" or "volume"
     toughness : "lattice" or "even"
         Whether all bonds share one w_c, or those along the lattice's rows are levelled.
+    control : "following" or "fixed"
+        With ``fixed`` the load never falls: it rises to the next event and stays until no bond is
+        overloaded, and the batch matters little.
     mirrored : bool
         Material and load reflected at the crack's line.
     """
@@ -60,6 +65,7 @@ class Kink:
     turn: float = 0.0
     surface: str = "volume"
     toughness: str = "lattice"
+    control: str = "following"
     mirrored: bool = False
 
     @property
@@ -151,7 +157,7 @@ def grow_kink(kink: Kink, reach: float = REACH) -> Grown:
     run = grow(
         scene,
         Toughness(1.0, calibration=kink.toughness),  # type: ignore[arg-type]
-        Programme(control="following"),
+        Programme(control=kink.control),  # type: ignore[arg-type]
         batch=batch(kink),
         tolerance=1e-6,
         until=lambda run: run.advance >= reach,
