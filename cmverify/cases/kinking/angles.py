@@ -29,6 +29,7 @@ def energy_angle(material: str, mixity: float) -> float:
     return float(np.degrees(_table(material).kink_angle(np.cos(angle), np.sin(angle))))
 
 
+@cache
 def hoop_angle(material: str, mixity: float) -> float:
     """Where the hoop stress intensity factor is largest (closed form), degrees."""
     from references.analytic.kinking import hoop_kink_angle

@@ -146,7 +146,7 @@ def _deviations(
     kink: Kink, mixities: Sequence[float], read: Array, energy: Array
 ) -> tuple[LinePlot, LinePlot]:
     """What is varied beside what is not: deviations, and how the rows of the lattice draw."""
-    mixed, fine = np.array(mixities), np.linspace(0.0, 90.0, 46)
+    mixed, fine = np.array(mixities), np.linspace(0.0, 90.0, 31)
     apart = np.array([hoop_angle(kink.material, a) - energy_angle(kink.material, a) for a in fine])
     ends = np.array([-100.0, 40.0])
     return (
@@ -187,7 +187,7 @@ def _lines(
                 radius * np.cos(angle),
             )
         )
-    fine = np.linspace(0.0, 90.0, 46)
+    fine = np.linspace(0.0, 90.0, 31)
     energy = np.array([energy_angle(material, a) for a in fine])
     hoop = np.array([hoop_angle(material, a) for a in fine])
     chord = np.array([chord_angle(g.path) for g in grown])
@@ -197,7 +197,7 @@ def _lines(
         Curve("bond model, line to a/4", mixed, read, energy, fine),
         Curve("bond model, line to a/10", mixed, near, energy, fine),
         Curve("bond model, chord", mixed, chord, energy, fine),
-        Curve("hoop criterion", fine[::3], hoop[::3], energy, fine),
+        Curve("hoop criterion", fine[::2], hoop[::2], energy, fine),
     )
     degrees = np.linspace(-95.0, 95.0, 191)
     flat = []
