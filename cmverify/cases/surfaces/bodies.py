@@ -19,7 +19,7 @@ TREATMENTS: tuple[Treatment, ...] = ("none", "volume", "extrapolated")
 #: Enough of them to fit an order: how an edge cuts the cells differs from one to the next.
 LADDER = {
     Level.QUICK: (20,),
-    Level.STANDARD: (20, 30, 50),
+    Level.STANDARD: (20, 30, 40, 50, 70),
     Level.PAPER: (20, 30, 40, 50, 70, 100),
 }
 TOLERANCE = 1e-11

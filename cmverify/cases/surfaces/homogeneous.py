@@ -211,7 +211,7 @@ CASES = (
         "Rectangle, turned in the lattice, with two insulated edges",
         TURNED,
         {20: 2.7e-3, 50: 1.2e-3, 100: 4e-4},
-        # 1.2 over six spacings from 20 to 100 cells, 1.0 over the three of the standard level.
+        # 1.2 over six spacings from 20 to 100 cells, 1.0 over the five of the standard level.
         0.9,
     ),
 )
