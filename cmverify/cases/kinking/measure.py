@@ -151,7 +151,7 @@ def _deviations(
     ends = np.array([-100.0, 40.0])
     return (
         LinePlot(
-            "Deviation from the energy criterion, one thing varied at a time",
+            "Off the energy criterion, one thing varied",
             "$\\alpha_K$ (°)",
             "deviation of the kink angle (°)",
             (Curve("bond model", mixed, read - energy, apart, fine),),
@@ -160,7 +160,7 @@ def _deviations(
             reference_label="hoop criterion",
         ),
         LinePlot(
-            "Directions from axis 1 of the lattice, whose densest rows run at 0°, ±45° and 90°",
+            "Directions to the lattice (rows at 0, ±45, 90°)",
             "by the energy criterion (°)",
             "found (°)",
             (Curve("bond model", energy + kink.turn, read + kink.turn, ends, ends),),
