@@ -17,8 +17,8 @@ from scipy.sparse.linalg import LinearOperator
 
 from . import kernels
 from .bonds import Bonds
-from .ended import SurfaceStiffness
 from .micromoduli import ConductiveModuli, ElasticModuli, Moduli
+from .surface_stiffness import SurfaceStiffness, stiffness_of
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -96,7 +96,7 @@ class BondOperator(LinearOperator):
         #: Stiffness of the bonds that end at the surface, if there are any.
         self.surface: SurfaceStiffness | None = None
         if bonds.ended is not None:
-            self.surface = bonds.ended.stiffness(bonds.family, moduli, self.components)
+            self.surface = stiffness_of(bonds.ended, bonds.family, moduli, self.components)
             self._add_surface()
 
     def _add_surface(self) -> None:

@@ -18,7 +18,7 @@ from scipy.spatial import KDTree
 
 from . import mechanisms
 from .bonds import Bonds
-from .conditions import Load, Quadrature, Support, evaluate
+from .conditions import Load, Support, evaluate
 from .errors import MechanismError, SceneError
 from .family import AreaRule, Family
 from .influence import CONSTANT, Influence, influence
@@ -27,6 +27,7 @@ from .laws import AngularLaw
 from .micromoduli import Calibration, Moduli, calibrate
 from .operators import BondOperator
 from .outline import Outline
+from .quadrature import Quadrature
 from .regions import Crack, Region
 from .stability import Stability, require_admissible
 from .surface import Surface, check_surface

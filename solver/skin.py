@@ -52,6 +52,8 @@ _BEND = 1.2
 # Radius of curvature (cells) below which the bump would see round the curve: no membrane there,
 # the whole of it from twice that on.
 _TIGHT = 5.0
+# Thickness (cells) that is rounding, or the little by which a line on the very edge lies inside.
+_NONE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -137,6 +139,7 @@ def thickness(outline: Outline, family: Family, moduli: Moduli, edges: Indices) 
     )
     # Half a strip at most lacks anywhere. On short edges what is too much could take more stiffness
     # than their nodes have.
+    lack[np.abs(lack) < _NONE] = 0.0
     least = -0.5 * np.minimum(1.0, outline.length[edges[own]] / (2.0 * h))
     result[own] = round_enough * np.clip(lack, least, 0.5) * h * modulus
     return result

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import solver.ended
+import solver.surface_stiffness
 from solver import (
     ConductivityTensor,
     Crack,
@@ -145,7 +145,7 @@ def dense_reference(operator):
 @pytest.mark.parametrize("material", [SOLID, ElasticTensor.isotropic(1.0, 1 / 3), DISC])
 def test_the_condensed_operator_is_that_of_the_single_bonds(material, monkeypatch):
     # The membrane along the edge has tests of its own.
-    monkeypatch.setattr(solver.ended, "thickness", lambda *a: np.zeros(len(a[-1])))
+    monkeypatch.setattr(solver.surface_stiffness, "thickness", lambda *a: np.zeros(len(a[-1])))
     if isinstance(material, np.ndarray):
         material = ConductivityTensor(material)
     crack = Crack((-0.1, 0.32), (0.41, 0.38))

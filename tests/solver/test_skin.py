@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-import solver.ended
+import solver.surface_stiffness
 from solver import ConductivityTensor, Crack, ElasticTensor, Family, disc, rectangle
 from solver.micromoduli import calibrate
 from solver.outline import Outline
@@ -87,7 +87,7 @@ def test_the_membranes_energy_by_hand(monkeypatch):
     per_length = thickness(
         outline, operator.bonds.family, operator.moduli, np.arange(len(outline.edges))
     )
-    monkeypatch.setattr(solver.ended, "thickness", lambda *a: np.zeros(len(a[-1])))
+    monkeypatch.setattr(solver.surface_stiffness, "thickness", lambda *a: np.zeros(len(a[-1])))
     without = body(rectangle(20.0, 20.0, (0, 0.3)), 1.0, 2).surface.matrix
     u = np.concatenate([(outline.nodes[nodes] * [0.3, -0.7]).T.ravel(), np.zeros(len(nodes))])
     along = outline.outward[:, ::-1] ** 2
@@ -109,7 +109,7 @@ def test_a_square_off_the_lattice(monkeypatch):
     # 25 columns: the edges run through particles. 3.8e-3 measured, 3.9e-2 without the membrane.
     square = rectangle(1.0, 1.0)
     assert homogeneous_error(square, 25, "extrapolated")[0] < 5e-3
-    monkeypatch.setattr(solver.ended, "thickness", lambda *a: np.zeros(len(a[-1])))
+    monkeypatch.setattr(solver.surface_stiffness, "thickness", lambda *a: np.zeros(len(a[-1])))
     assert homogeneous_error(square, 25, "extrapolated")[0] > 2e-2
 
 
@@ -117,5 +117,5 @@ def test_a_disc(monkeypatch):
     # 8.1e-4 measured at 40 cells across, 1.4e-3 without.
     body = disc(0.5)
     assert homogeneous_error(body, 40, "extrapolated")[0] < 1.1e-3
-    monkeypatch.setattr(solver.ended, "thickness", lambda *a: np.zeros(len(a[-1])))
+    monkeypatch.setattr(solver.surface_stiffness, "thickness", lambda *a: np.zeros(len(a[-1])))
     assert homogeneous_error(body, 40, "extrapolated")[0] > 1.2e-3
