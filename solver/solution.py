@@ -112,6 +112,30 @@ class Solution:
         return self.unknowns[2] / self.spacing
 
     @property
+    def surface_points(self) -> Array:
+        """Nodes of the surface at which bonds end, shape (s, 2), m; none where no bond does."""
+        surface = self.discretisation.operator.surface
+        if surface is None:
+            return np.zeros((0, 2))
+        return surface.ended.outline.nodes[surface.nodes]
+
+    def _at_surface(self) -> Array:
+        values = self.discretisation.surface_values(self.unknowns)
+        return np.zeros((len(self.unknowns), 0)) if values is None else values
+
+    @property
+    def surface_displacement(self) -> Array:
+        """u at the surface's nodes, shape (s, 2), m."""
+        self._need(True)
+        return self._at_surface()[:2].T
+
+    @property
+    def surface_temperature(self) -> Array:
+        """T at the surface's nodes, shape (s,), K."""
+        self._need(False)
+        return self._at_surface()[0]
+
+    @property
     def temperature(self) -> Array:
         """T, shape (N,), K (the potential, V, in electrical conduction)."""
         self._need(False)
