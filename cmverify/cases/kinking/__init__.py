@@ -22,6 +22,7 @@ VARIATIONS: dict[str, dict[str, Any]] = {
     "turned 22.5°, batch ÷ 8": {"turn": 22.5, "front": 1 / 8},
     "even bonds, batch ÷ 2": {"toughness": "even", "front": 1 / 2},
     "no surface factors": {"surface": "none"},
+    "extrapolated faces": {"surface": "extrapolated"},
 }
 #: The load held while bonds are overloaded, which takes ten times the solves: three mixities.
 HELD = "load held, three mixities"

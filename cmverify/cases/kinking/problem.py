@@ -47,7 +47,7 @@ class Kink:
         is driven harder than its toughness asks for.
     turn : float
         Angle of the crack (and of the material with it) to the lattice's axis 1, degrees.
-    surface : "none" or "volume"
+    surface : "none", "volume" or "extrapolated"
     toughness : "lattice" or "even"
         Whether all bonds share one w_c, or those along the lattice's rows are levelled.
     control : "following" or "fixed"
