@@ -21,7 +21,7 @@ from .ended import EndedBonds
 from .errors import SceneError
 from .family import Family
 from .lattice import Lattice
-from .outline import Outline
+from .outline import Outline, apart
 from .regions import Crack
 from .surface import Surface, full_volume, volume_factor
 
@@ -226,6 +226,7 @@ class Bonds:
             return None
         lost = ~self.exist(particles)
         lost[:, np.searchsorted(particles, cut_at)] |= cut
+        apart(cracks)
         outline = Outline.of(lattice.region, cracks, lattice.spacing, joined=not growing)
         free = free[particles]
         ended = EndedBonds.of(lattice, family, outline, particles[free], lost[:, free])

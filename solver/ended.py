@@ -30,7 +30,9 @@ nothing.
 Edges along the lattice's rows need one thing more, a thin membrane on the nodes: see
 `solver.skin`.
 
-A bond that a load breaks does not end at a surface: it carries nothing.
+A bond that a load breaks does not end at a surface: it carries nothing. Ended bonds themselves do
+not break, and a crack that grows out through an edge would leave the edge's nodes whole:
+`solver.fracture` ends a run there. Cracks that meet each other are refused.
 """
 
 from __future__ import annotations

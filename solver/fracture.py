@@ -29,7 +29,7 @@ from .equilibrium import Equilibrium
 from .errors import ConvergenceError, MechanismError, NegativeCurvatureError, SceneError
 from .ledger import History, Ledger
 from .programme import Programme
-from .scene import Scene
+from .scene import Discretisation, Scene
 from .solution import Solution
 
 Array = NDArray[np.float64]
@@ -41,6 +41,8 @@ Indices = NDArray[np.int64]
 _BATCH = 0.2
 # Relative residual within an avalanche.
 _ROUGH = 1e-5
+# Utilisation, relative to what is to break or has broken, that is the solver's noise.
+_NOISE = 1e-10
 
 
 class Growth:
@@ -78,7 +80,7 @@ class Growth:
         self.body = Equilibrium(start, tolerance, max_iterations)
         self.ledger = Ledger(self.body, self.bonds)
         # Solver options that decide results, for checkpoints.
-        self.options = (no_fail, tension_only, criterion, self.batch, tolerance, max_iterations)
+        self.options = (tension_only, criterion, self.batch, tolerance, max_iterations)
         self.history = History(tuple(monitors))
         self._monitors = monitors
         self.factor, self.target, self.resting = programme.start, 0, True
@@ -86,6 +88,7 @@ class Growth:
         self.precise = True
         self.log: list[tuple[int, int, float, bool]] = []
         self.solves: list[tuple[int, int, bool]] = []
+        self._at_edge = _edge_particles(start)
         self._starts = crack_path.initial_tips(scene.cracks, scene.region)
         self._paths: tuple[int, list[CrackPath]] = (-1, [])
 
@@ -215,7 +218,10 @@ class Growth:
         """Change the load to the next event or the next target."""
         targets = self.programme.targets
         target = targets[self.target]
-        event = 1.0 / np.sqrt(largest) if largest > 0 else np.inf
+        event = self._event(largest)
+        if not np.isfinite(event) and not np.isfinite(target):
+            self.reason = "no load breaks another bond"
+            return
         if target > self.factor and event <= target * (1 + TIE):
             self._move(self.programme.reach(max(event, self.factor), target))
             self.record()
@@ -231,8 +237,12 @@ class Growth:
 
     def _follow(self, utilisation: Array) -> None:
         """Break the next batch at the load that just overloads all of it."""
-        batch, load = next_batch(utilisation, 0.0, self.batch)
-        event = 1.0 / float(np.sqrt(load.min())) if len(batch) else np.inf
+        # What next to nothing loads is noise, and no part of a batch.
+        least = _NOISE * float(utilisation.max(initial=0.0))
+        batch, load = next_batch(utilisation, least, self.batch)
+        event = self._event(float(load.min())) if len(batch) else np.inf
+        if not np.isfinite(event):
+            batch = batch[:0]
         if event > self.programme.stop or not len(batch):
             self._drop(self.body.loose())
             if np.isfinite(self.programme.stop):
@@ -247,11 +257,32 @@ class Growth:
         self.resting = False
         self._break(batch)
 
+    def _parts_an_edge(self, batch: Indices) -> bool:
+        """Whether a bond between neighbours beside a free edge is to break."""
+        assert self._at_edge is not None
+        _, origins, ends = self.bonds.ends(batch)
+        near = self.bonds.lengths(batch) <= crack_path.SHORT * self.scene.spacing
+        return bool((near & self._at_edge[origins] & self._at_edge[ends]).any())
+
+    def _event(self, largest: float) -> float:
+        """Load factor of the next event; infinite if bonds bear nothing but the solver's noise."""
+        if largest <= 0.0:
+            return float(np.inf)
+        event = float(1.0 / np.sqrt(largest))
+        before = max((entry[2] for entry in self.log), default=np.inf)
+        return event if event * np.sqrt(_NOISE) < before else float(np.inf)
+
     def _move(self, factor: float) -> None:
         self.ledger.move(self.factor, factor)
         self.factor = factor
 
     def _break(self, batch: Indices) -> None:
+        if self._at_edge is not None and self._parts_an_edge(batch):
+            self.reason = (
+                "a crack has come to a free edge, and surface='extrapolated' cannot part edges: "
+                "use surface='volume' beyond"
+            )
+            return
         self.ledger.broken(batch, self.factor)
         self._remove(batch, dropped=False)
         self._drop(self.body.slack())
@@ -436,6 +467,17 @@ def grow(
     if checkpoint is not None:
         restart.save(run, checkpoint, mark)
     return run
+
+
+def _edge_particles(start: Discretisation) -> Mask | None:
+    """Particles within a cell of an edge of the region (not of a crack's face), or None."""
+    ended = start.bonds.ended
+    if ended is None:
+        return None
+    found = np.zeros(start.lattice.count, dtype=bool)
+    near = (ended.outline.face[ended.edge] == 0) & (ended.length < start.family.spacing)
+    found[ended.particle[near]] = True
+    return found
 
 
 def _batch_size(batch: int | None, offsets: NDArray[np.int64]) -> int:

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from .errors import SceneError
 from .regions import Crack, Region
 
 Array = NDArray[np.float64]
@@ -30,6 +31,8 @@ _CLOSE = 0.3
 # how far the lattice sees the crack reach: of 1, 2, 3 cells one has the smallest error in mode I
 # and less than separate tips in mode II.
 _EDGE_STEP, _LEVEL_STEP, _FACE_STEP = 2.5, 1.0, 1.0
+# Turn (rad) that makes a corner.
+_SHARP = 0.6
 # Share of the step within which a line counts as touching.
 _TIE = 1e-9
 # Bonds whose candidates are compared at once.
@@ -95,10 +98,15 @@ class Outline:
                 order[-1] = 0
             chain(line[:size], np.column_stack([order[:-1], order[1:]]), 1)
             if joined and not crack.closed:
-                # The right face has only the points between the tips for itself.
-                order = order - 1
-                order[0], order[-1] = -size, -1
-                line = line[1:-1]
+                # The right face shares the nodes of tips; a mouth, on the edge or beyond, is none.
+                x, y = line[[0, -1]].T
+                first, last = region.contains(x, y) & (region.edge_distance(x, y) > _TIE * spacing)
+                order = order - int(first)
+                if first:
+                    order[0] = -size
+                if last:
+                    order[-1] = -1
+                line = line[int(first) : size - int(last)]
             chain(line[:size], np.column_stack([order[1:], order[:-1]]), 2)
         return cls(np.concatenate(nodes), np.concatenate(edges), np.array(face))
 
@@ -168,6 +176,10 @@ class Outline:
             # belongs to the left, as for bonds that the crack cuts.
             leaves = np.einsum("ki,ki->k", bond[path], outward[met]) > 0
             valid &= np.where(self.face[met] == 0, leaves, self._turned(start[path], met))
+            # At a mouth both ends of the split edge are met: only the one on the particle's own
+            # side of the crack counts.
+            end = valid & (self.face[met] == 0) & (np.abs(where - 0.5) > 0.5 - 1e-6)
+            valid[end] &= ~self._behind(start[path[end]], 0.5 * (first[met[end]] + last[met[end]]))
             path, met, where, depth = path[valid], met[valid], where[valid], depth[valid]
             # Nearest to the bond itself, then to its start.
             beyond = np.abs(depth - np.clip(depth, 0.0, 1.0))
@@ -176,6 +188,23 @@ class Outline:
             chosen = order[nearest]
             edge[path], position[path], share[path] = met[chosen], where[chosen], depth[chosen]
         return edge, position, share
+
+    def _behind(self, points: Array, targets: Array) -> NDArray[np.bool_]:
+        """Whether a crack lies between each point and its target."""
+        behind = np.zeros(len(points), dtype=bool)
+        for k in np.nonzero(self.face == 1)[0]:
+            a, b = self.nodes[self.edges[k]]
+            along = b - a
+            height = [
+                along[0] * (p[:, 1] - a[1]) - along[1] * (p[:, 0] - a[0]) for p in (points, targets)
+            ]
+            tie = _TIE * (along @ along)
+            opposite = (height[0] >= -tie) != (height[1] >= -tie)
+            gap = np.where(opposite, height[0] - height[1], 1.0)
+            at = points + (height[0] / gap)[:, None] * (targets - points)
+            share = (at - a) @ along / (along @ along)
+            behind |= opposite & (share >= -_TIE) & (share <= 1 + _TIE)
+        return behind
 
     def corners(self, turn: float) -> Array:
         """Nodes at which the region's edge turns inwards by more than `turn` rad, shape (n, 2)."""
@@ -229,6 +258,25 @@ class Outline:
         height = along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0]
         tie = _TIE * np.einsum("ki,ki->k", along, along)
         return np.asarray(np.where(self.face[edge] == 2, height > tie, height >= -tie))
+
+
+def apart(cracks: Sequence[Crack]) -> None:
+    """Refuse cracks that meet each other or themselves: their faces would stay joined there.
+
+    Raises
+    ------
+    SceneError
+    """
+    lines = [shapely.LineString(crack.points) for crack in cracks]
+    for line, crack in zip(lines, cracks, strict=True):
+        if not line.is_simple:
+            raise SceneError(f"the crack through {crack.points} crosses itself")
+    for one, other in combinations(range(len(lines)), 2):
+        if lines[one].intersects(lines[other]):
+            raise SceneError(
+                f"the cracks through {cracks[one].points} and {cracks[other].points} meet: "
+                f"surface='extrapolated' knows no branching faces, use surface='volume'"
+            )
 
 
 def _rings(region: Region, step: float) -> list[Array]:
@@ -285,8 +333,9 @@ def _split(ring: Array, cracks: Sequence[Crack], step: float) -> tuple[Array, In
             for k in np.nonzero(valid)[0][::-1]:
                 point = ring[k] + depth[k] * (ahead[k] - ring[k])
                 near = np.hypot(*(ring - point).T)
-                if near.min() < _CLOSE * step:
-                    place = int(near.argmin())
+                place = int(near.argmin())
+                free = near[place] < _TIE * step or not _is_corner(ring, place)
+                if near[place] < _CLOSE * step and free:
                     ring[place] = point
                 else:
                     place = int(k) + 1
@@ -301,6 +350,13 @@ def _split(ring: Array, cracks: Sequence[Crack], step: float) -> tuple[Array, In
         # The edge that arrives ends at a double.
         links[(place - 1) % count, 1] = count + extra
     return np.concatenate([ring, ring[doubles]]), links
+
+
+def _is_corner(ring: Array, place: int) -> bool:
+    """Whether a closed ring turns sharply there: corners of a body stay where they are."""
+    before, here, after = ring[place - 1], ring[place], ring[(place + 1) % len(ring)]
+    a, b = here - before, after - here
+    return bool(abs(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)) > _SHARP)
 
 
 def _meet(

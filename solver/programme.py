@@ -65,6 +65,8 @@ class Programme:
     def __post_init__(self) -> None:
         if not (isfinite(self.start) and self.start >= 0):
             raise SceneError(f"the first load factor must be at least 0, not {self.start}")
+        if self.levels is not None and isfinite(self.stop):
+            raise SceneError("a programme ends at `stop` or visits `levels`, not both")
         if not self.stop >= self.start:
             raise SceneError(f"the programme stops at {self.stop}, before it starts")
         if self.increment is not None and not (isfinite(self.increment) and self.increment > 0):

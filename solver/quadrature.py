@@ -21,7 +21,7 @@ Where = Region | Callable[[Array, Array], Any]
 # each its own share.
 _POINTS = 24
 # An edge belongs to a straight line if both its ends lie within this share of its length.
-_ALONG = 0.2
+_ALONG = 0.02
 # Smaller shares of an edge are rounding of where a load begins.
 _SLIVER = 1e-9
 

@@ -45,6 +45,9 @@ def fingerprint(run: Growth) -> str:
         run.options,
         run.history.names,
     ]
+    if start.bonds.ended is not None:
+        ended = start.bonds.ended
+        parts += [ended.particle, ended.offset, ended.edge, ended.position, ended.length]
     for part in parts:
         if isinstance(part, np.ndarray):
             digest.update(f"{part.dtype}{part.shape}".encode())
@@ -103,6 +106,8 @@ def load(run: Growth, path: str | os.PathLike[str], mark: str) -> bool:
     run.history.rows += found["history"].tolist()
     ledger.work, ledger.dissipated, ledger.excess, ledger.deflection = found["ledger"].tolist()
     body.aside = found["aside"]
+    if body.aside.any():
+        body.bonds = body.bonds.without_ends(np.nonzero(body.aside)[0])
     gone = np.array([entry[0] for entry in run.log], dtype=np.int64)
     iterations, worn, built, precise = found["counters"].tolist()
     body.iterations, body.worn, run.precise = iterations, bool(worn), bool(precise)

@@ -237,6 +237,11 @@ class Discretisation:
             values[:, loose] = np.nan
             broken = mechanisms.without(bonds, broken, loose)
         pull = _share_out(pulls, lattice, operator, load)
+        if load[:, aside].any():
+            raise MechanismError(
+                "a load on an edge acts on a part that nothing holds: hold it, or leave it out of "
+                "the load (where=...)"
+            )
         seconds = perf_counter() - begun
         return cls(
             scene,

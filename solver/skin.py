@@ -140,6 +140,10 @@ def thickness(outline: Outline, family: Family, moduli: Moduli, edges: Indices) 
     # Half a strip at most lacks anywhere. On short edges what is too much could take more stiffness
     # than their nodes have.
     lack[np.abs(lack) < _NONE] = 0.0
+    # Beside a notch or hole of a few cells the bump would see the corners behind.
+    steps = np.hypot(*(chains[:, 1:] - chains[:, :-1]).transpose(2, 0, 1))
+    steps[np.arange(chains.shape[1] - 1) >= (length - 1)[:, None]] = 0.0
+    lack[steps.sum(axis=1) < _TIGHT * h] = 0.0
     least = -0.5 * np.minimum(1.0, outline.length[edges[own]] / (2.0 * h))
     result[own] = round_enough * np.clip(lack, least, 0.5) * h * modulus
     return result

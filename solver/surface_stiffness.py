@@ -5,6 +5,7 @@ Energies and why they are what they are: `solver.ended`; the membrane along the 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
@@ -105,18 +106,27 @@ class SurfaceStiffness:
                 strain = strain + _place(rows, _between(ends, chords.position[:, end]), count[1])
             scaled = sparse.diags_array(rule.weight.ravel()) @ strain
             matrix = matrix + sparse.csc_array(strain.T @ scaled)
-        matrix = matrix + self._skin(family, moduli, number)
+        skin = self._skin(family, moduli, number)
         #: K_ss.
-        self.matrix: sparse.csc_array = matrix
+        self.matrix: sparse.csc_array = matrix + skin(False)
         self._factors = self._factorise(number[ended.outline.edges])
+        if moduli.non_negative and self._factors.U.diagonal().min(initial=1.0) < 0.0:
+            # Where few bonds hold a node, what is too much of the lattice must not soften it.
+            self.matrix = matrix + skin(True)
+            self._factors = self._factorise(number[ended.outline.edges])
 
-    def _skin(self, family: Family, moduli: Moduli, number: Indices) -> sparse.csc_array:
-        """The membrane that makes up for strips of the lattice along the edge (`solver.skin`)."""
+    def _skin(
+        self, family: Family, moduli: Moduli, number: Indices
+    ) -> Callable[[bool], sparse.csc_array]:
+        """The membrane that makes up for strips of the lattice along the edge (`solver.skin`).
+
+        A function of whether only what stiffens is wanted.
+        """
         outline, c, count = self.ended.outline, self.components, len(self.nodes)
         ends = number[outline.edges]
         edges = np.nonzero((outline.face == 0) & (ends >= 0).all(axis=1))[0]
         if not len(edges):
-            return sparse.csc_array((c * count, c * count))
+            return lambda _: sparse.csc_array((c * count, c * count))
         stiffness = thickness(outline, family, moduli, edges) / family.cell
         length = outline.length[edges]
         along = (outline.nodes[outline.edges[edges, 1]] - outline.nodes[outline.edges[edges, 0]]).T
@@ -125,7 +135,12 @@ class SurfaceStiffness:
         rows[0, : len(along)] = along / length
         one = np.ones(len(edges))
         strain = _place(rows, [(ends[edges, 1], one), (ends[edges, 0], -one)], count)
-        return sparse.csc_array(strain.T @ sparse.diags_array(stiffness * length) @ strain)
+
+        def membrane(stiffening: bool) -> sparse.csc_array:
+            kept = np.maximum(stiffness, 0.0) if stiffening else stiffness
+            return sparse.csc_array(strain.T @ sparse.diags_array(kept * length) @ strain)
+
+        return membrane
 
     def _factorise(self, edges: Indices) -> SuperLU:
         """Factors of K_ss. `edges` joins all nodes of the outline, −1 for those without bonds."""

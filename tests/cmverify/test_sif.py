@@ -11,7 +11,7 @@ from cmverify.cases.crack_tip import STIFFNESS, Problem
 from references.analytic.crack_series import crack_tip_term
 from references.analytic.lekhnitskii import crack_tip_displacement
 from references.analytic.voigt import turned_axes
-from solver import ConductivityTensor, Crack, ElasticTensor, Scene, Support, disc
+from solver import ConductivityTensor, Crack, ElasticTensor, Load, Scene, Support, disc, rectangle
 from tests.references.analytic.tensors import random_voigt
 
 few = settings(derandomize=True, deadline=None, max_examples=15)
@@ -109,3 +109,33 @@ def test_bad_input_is_refused():
     for read in (sif.interaction_integral, sif.tip_series):
         with pytest.raises(ValueError, match="elastic"):
             read(heat, (0.0, 0.0), 0.0, 0.9)
+
+
+@pytest.mark.parametrize("surface", ["volume", "extrapolated"])
+@pytest.mark.parametrize("mouth", [-0.5, -0.6])
+def test_an_edge_crack_is_open_at_its_mouth(surface, mouth):
+    # 2.8246 for a/W = 1/2 (Tada, Paris and Irwin); faces that hang together give half of it.
+    def nearest(x0, y0):
+        def where(x, y):
+            chosen = np.zeros(len(x), dtype=bool)
+            chosen[np.argmin(np.hypot(x - x0, y - y0))] = True
+            return chosen
+
+        return where
+
+    scene = Scene(
+        rectangle(1.0, 3.0),
+        1 / 20,
+        ElasticTensor.isotropic(1.0, 0.2),
+        m=3,
+        surface=surface,
+        cracks=[Crack((mouth, 0.0), (0.0, 0.0))],
+        supports=[
+            Support.where(nearest(0.35, -0.3), u1=0.0, u2=0.0),
+            Support.where(nearest(0.35, 0.3), u1=0.0),
+        ],
+        loads=[Load.stress((0.0, 1.0, 0.0), where=lambda x, y: abs(y) > 1.45)],
+    )
+    solution = scene.solve(tolerance=1e-9)
+    k1, _ = sif.interaction_integral(solution, (0.0, 0.0), 0.0, 0.4, inner=0.4)
+    assert k1 / np.sqrt(np.pi * 0.5) == pytest.approx(2.8246, rel=0.03)

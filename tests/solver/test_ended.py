@@ -13,6 +13,7 @@ from solver import (
     Family,
     Load,
     Scene,
+    SceneError,
     Support,
     disc,
     polygon,
@@ -390,3 +391,37 @@ def test_negative_shear_stiffness_has_surfaces_too():
         return np.linalg.norm(solution.displacement - expected) / np.linalg.norm(expected)
 
     assert solve("extrapolated") < 0.2 * solve("volume")
+
+
+# ---- cracks that run into edges -----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("mouth", [-0.5, -0.51, -0.6])
+@pytest.mark.parametrize("height", [0.0, 0.015, 0.025])
+@pytest.mark.parametrize("hole", [False, True])
+def test_a_plate_cut_in_two_has_two_free_halves(mouth, height, hole):
+    region = rectangle(1.0, 1.0) - disc(0.2) if hole else rectangle(1.0, 1.0)
+    operator = body(region, 0.05, 3, SOLID, [Crack((mouth, height), (-mouth, height))])
+    points = operator.bonds.lattice.points
+    # Rows on the very line of the crack belong to its left.
+    upper = points[:, 1] > height - 1e-9
+    apart = np.zeros((3, len(points)))
+    apart[1] = np.where(upper, 1.0, -1.0)
+    force = operator.matvec(apart.ravel())
+    assert np.abs(force).max() < 1e-8 * np.abs(operator.bulk).max()
+
+
+def test_cracks_that_meet_are_refused():
+    one, other = Crack((-0.3, 0.0), (0.3, 0.0)), Crack((0.0, -0.3), (0.0, 0.3))
+    with pytest.raises(SceneError, match="meet"):
+        body(rectangle(1.0, 1.0), 0.1, 2, SOLID, [one, other])
+    with pytest.raises(SceneError, match="crosses itself"):
+        body(
+            rectangle(1.0, 1.0), 0.1, 2, SOLID, [Crack((-0.3, 0), (0.3, 0), (0.3, 0.3), (0, -0.3))]
+        )
+
+
+@pytest.mark.parametrize("shape", [disc(0.06), rectangle(0.1, 0.1), rectangle(0.3, 0.08)])
+def test_nodes_of_tiny_holes_stay_stiff(shape):
+    surface = body(rectangle(2.0, 2.0) - shape, 0.1, 3).surface
+    assert np.linalg.eigvalsh(surface.matrix.toarray()).min() > 0
