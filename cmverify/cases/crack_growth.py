@@ -48,6 +48,7 @@ HORIZONS = 2.4  # of advance in all
 LADDER = {Level.QUICK: (), Level.STANDARD: (16, 24), Level.PAPER: (16, 24, 40)}
 SLANTED = {Level.QUICK: (), Level.STANDARD: (16,), Level.PAPER: (16, 24)}
 COARSE = {Level.QUICK: (16,), Level.STANDARD: (16, 24), Level.PAPER: (16, 24)}
+COARSE_TOO = {**COARSE, Level.QUICK: ()}
 FINE = {Level.QUICK: (), Level.STANDARD: (), Level.PAPER: (24,)}
 SOURCE = "issue F, Energy"
 
@@ -306,7 +307,10 @@ def _checks(name: str) -> list[Check]:
 
 _METHODS = (
     *(_method(strip, SLANTED if strip.degrees else LADDER) for strip in STRIPS),
-    *(_method(strip, COARSE if strip.m == 3 else FINE) for strip in TRENDS),
+    *(
+        _method(strip, ladder)
+        for strip, ladder in zip(TRENDS, (COARSE, COARSE_TOO, FINE), strict=True)
+    ),
 )
 
 CASES = (

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import cache, partial
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from cmverify import adapters
 from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measurement, OrderBand
@@ -63,6 +62,8 @@ def edge_hoop(voigt: Array, angle: Array, displacement: Array) -> Array:
 
 def pulled(problem: Pulled, treatment: Treatment, m: float, n: int) -> Measurement:
     """Displacement of the hole's edge, stress on the net section, hoop stress at the edge."""
+    from scipy.interpolate import CubicSpline
+
     from references.analytic.hole import edge_hoop_stress
     from references.generators import MATERIALS
     from solver import ElasticTensor, Load, Scene, disc, recovery, rectangle

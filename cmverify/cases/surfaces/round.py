@@ -29,11 +29,17 @@ SEED = 2022
 ANGLES = np.radians(np.arange(0.0, 360.0, 5.0))
 
 #: Moduli of order one. The orthotropic solid is bone with its axes turned by 30°.
-SOLIDS: dict[str, Array] = {
-    "isotropic": materials.isotropic(0.25),
-    "orthotropic": materials.turned(materials.TENSORS["bone"], 30.0) / 25.0,
-    "anisotropic": materials.TENSORS["fully anisotropic"] / 100.0,
-}
+SOLIDS = ("isotropic", "orthotropic", "anisotropic")
+
+
+@cache
+def stiffness(solid: str) -> Array:
+    """Of a size near one; made when asked for, so that listing the cases stays quick."""
+    if solid == "isotropic":
+        return materials.isotropic(0.25)
+    if solid == "orthotropic":
+        return materials.turned(materials.TENSORS["bone"], 30.0) / 25.0
+    return materials.TENSORS["fully anisotropic"] / 100.0
 
 
 @dataclass(frozen=True)
@@ -47,7 +53,7 @@ class Problem:
     @property
     def voigt(self) -> Array:
         """Stiffness, (3, 3)."""
-        return SOLIDS[self.solid]
+        return stiffness(self.solid)
 
     @property
     def region(self) -> Any:
@@ -86,7 +92,7 @@ def _polynomial(solid: str) -> Any:
     from references.analytic.elasticity import combine, equilibrium_polynomials
 
     generator = np.random.default_rng(SEED)
-    fields = [f for degree in (1, 2, 3) for f in equilibrium_polynomials(SOLIDS[solid], degree)]
+    fields = [f for degree in (1, 2, 3) for f in equilibrium_polynomials(stiffness(solid), degree)]
     # Each degree alike at the edge, half a unit away; the rotation among them is harmless.
     weights = generator.normal(size=len(fields)) * np.repeat([1.0, 2.0, 4.0], 4)
     return combine(fields, weights.tolist())

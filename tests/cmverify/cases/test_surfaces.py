@@ -72,7 +72,7 @@ def test_the_hole_is_free_and_its_hoop_stress_the_closed_form_s(solid):
 def test_the_edge_s_own_strain_gives_its_hoop_stress():
     from references.analytic.hole import hole_displacement
 
-    voigt = curved.SOLIDS["anisotropic"]
+    voigt = curved.stiffness("anisotropic")
     c, s = np.cos(curved.ANGLES), np.sin(curved.ANGLES)
     u = hole_displacement(voigt, c, s, 1.0, 1.0, (0.0, 1.0, 0.0))
     u = u + 0.3 * np.stack([-s, c], axis=-1)  # a rotation strains nothing
