@@ -84,7 +84,6 @@ def test_growth_takes_what_it_should():
 def test_levels_name_what_they_measure():
     assert {method.name for method, _ in CASE.plan(Level.QUICK)} == {
         "isotropic 0° m=3",
-        "bone 0° m=3",
     }
     assert {method.name for method, _ in CASE.plan(Level.STANDARD)} >= {
         "isotropic 45°",
