@@ -1,8 +1,8 @@
 """The body's surface as polylines: outer edges, holes, and both faces of every crack.
 
-Nodes lie one to four spacings apart and keep the corners. The body is to the left of every edge.
-The faces of a crack have nodes of their own each and meet at its tips, and the edge that a crack
-runs into is split there: nothing on the outline joins what a crack separates.
+Nodes lie one to two and a half spacings apart and keep the corners. The body is to the left of
+every edge. The faces of a crack have nodes of their own each and meet at its tips, and the edge
+that a crack runs into is split there: nothing on the outline joins what a crack separates.
 """
 
 from __future__ import annotations
@@ -206,11 +206,17 @@ class Outline:
             behind |= opposite & (share >= -_TIE) & (share <= 1 + _TIE)
         return behind
 
-    def corners(self, turn: float) -> Array:
-        """Nodes at which the region's edge turns inwards by more than `turn` rad, shape (n, 2)."""
+    @property
+    def beside(self) -> tuple[Indices, Indices]:
+        """The region's edge before and after every node, −1 where there is none, (nodes,) each."""
         before, after = np.full((2, len(self.nodes)), -1)
         here = np.nonzero(self.face == 0)[0]
-        after[self.edges[here, 0]], before[self.edges[here, 1]] = here, here
+        before[self.edges[here, 1]], after[self.edges[here, 0]] = here, here
+        return before, after
+
+    def corners(self, turn: float) -> Array:
+        """Nodes at which the region's edge turns inwards by more than `turn` rad, shape (n, 2)."""
+        before, after = self.beside
         node = np.nonzero((before >= 0) & (after >= 0))[0]
         along = self.nodes[self.edges[:, 1]] - self.nodes[self.edges[:, 0]]
         a, b = along[before[node]], along[after[node]]
@@ -230,7 +236,7 @@ class Outline:
             On the edges and along the line, 0 to 1.
         """
         first, last = self.nodes[self.edges[:, 0]], self.nodes[self.edges[:, 1]]
-        tree = shapely.STRtree(shapely.linestrings(np.stack([first, last], axis=1)))
+        tree = shapely.STRtree(self._lines)
         line, met = tree.query(shapely.linestrings(np.stack([start, start + bond], axis=1)))
         where, depth, valid = _meet(start[line], bond[line], first[met], last[met])
         line, met, where, depth = line[valid], met[valid], where[valid], depth[valid]
@@ -310,11 +316,11 @@ def _walk(points: Array, step: float, closed: bool, level: float | None = None) 
     pieces = []
     for first, last in pairwise(points):
         along = np.abs(last - first)
-        apart = step
+        most = step
         if level is not None and along.min() <= 1e-9 * along.max():
             row = first[int(np.argmin(along))] / level
-            apart = level if abs(row - np.rint(row)) < 1e-6 else step
-        count = max(1, int(np.ceil(np.hypot(*along) / apart - 1e-6)))
+            most = level if abs(row - np.rint(row)) < 1e-6 else step
+        count = max(1, int(np.ceil(np.hypot(*along) / most - 1e-6)))
         pieces.append(first + np.linspace(0, 1, count, endpoint=False)[:, None] * (last - first))
     if not closed:
         pieces.append(points[-1:])

@@ -21,7 +21,7 @@ from .operators import BondOperator
 from .preconditioner import TwoLevel
 
 if TYPE_CHECKING:
-    from .fracture import Growth
+    from .growth import Growth
 
 
 def fingerprint(run: Growth) -> str:

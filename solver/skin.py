@@ -154,8 +154,7 @@ def _radius(outline: Outline, edges: Indices) -> Array:
     ends = outline.nodes[outline.edges]
     angle = np.arctan2(*(ends[:, 1] - ends[:, 0]).T[::-1])
     here = np.nonzero(outline.face == 0)[0]
-    following = np.full(len(outline.nodes), -1)
-    following[outline.edges[here, 0]] = here
+    _, following = outline.beside
     after = following[outline.edges[here, 1]]
     turn = np.where(after >= 0, (angle[after] - angle[here] + np.pi) % (2 * np.pi) - np.pi, 0.0)
     turn[np.abs(turn) > _CORNER] = 0.0
@@ -174,10 +173,7 @@ def _chains(outline: Outline, edges: Indices, reach: float) -> tuple[Array, Indi
     A chain ends at corners and beyond `reach`; there its last edge goes straight on.
     """
     first, last = outline.edges.T
-    here = np.nonzero(outline.face == 0)[0]
-    following = np.full(len(outline.nodes), -1)
-    before = np.full(len(outline.nodes), -1)
-    following[first[here]], before[last[here]] = here, here
+    before, following = outline.beside
     ends = outline.nodes[outline.edges]
     angle = np.arctan2(*(ends[:, 1] - ends[:, 0]).T[::-1])
 

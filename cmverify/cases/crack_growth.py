@@ -194,8 +194,11 @@ def bond(strip: Strip, n: int) -> Measurement:
     unit = h.stored / np.where(h.factor > 0, h.factor, np.nan) ** 2 / strip.scale
     slope = -float(np.polyfit(along[growing], unit[growing], 1)[0])
     K = h.factor * strip.scale * intensity(strip, n) / critical_intensity(strip)
-    stray = _stray(strip, n, run) / float(along[-1])
-    dissipated = float(np.polyfit(along[growing], h.dissipated[growing], 1)[0])
+    cost, straying = run.bonds.cost_of(run.broken_bonds), _strays(strip, n, run)
+    # What the bonds on the path have cost by each record.
+    spent = np.concatenate([[0.0], np.cumsum(np.where(straying, 0.0, cost))])[h.broken.astype(int)]
+    dissipated = float(np.polyfit(along[growing], spent[growing], 1)[0])
+    stray = float(cost[straying].sum() / along[-1])
     steps = run.steps
     return Measurement(
         unknowns=run.body.operator.shape[0],
@@ -203,7 +206,7 @@ def bond(strip: Strip, n: int) -> Measurement:
             "release at initiation": abs(released_by_cutting(strip, n) / release - 1),
             "release in growth": abs(slope / release - 1),
             "grips": abs(release / strip.continuum - 1),
-            "dissipation": abs((dissipated - stray) / strip.toughness - 1),
+            "dissipation": abs(dissipated / strip.toughness - 1),
             "stray": stray / strip.toughness,
             "critical K": abs(float(K[growing].mean()) - 1),
             "largest K": float(K[growing].max()) - 1,
@@ -224,8 +227,8 @@ def bond(strip: Strip, n: int) -> Measurement:
     )
 
 
-def _stray(strip: Strip, n: int, run: Any) -> float:
-    """Energy of broken bonds that do not cross the crack's path or its continuation."""
+def _strays(strip: Strip, n: int, run: Any) -> np.ndarray:
+    """Which broken bonds do not cross the crack's path or its continuation."""
     import shapely
 
     bonds = run.broken_bonds
@@ -235,7 +238,7 @@ def _stray(strip: Strip, n: int, run: Any) -> float:
     ahead = path[-1] + [3 * strip.m / n, 0.0]
     line = shapely.LineString(np.vstack([path, ahead]))
     crosses = shapely.intersects(shapely.linestrings(np.stack([points[p], points[q]], 1)), line)
-    return float(run.bonds.cost_of(bonds)[~crosses].sum())
+    return np.asarray(~crosses)
 
 
 def _lines(

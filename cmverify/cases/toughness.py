@@ -18,6 +18,7 @@ from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measuremen
 
 if TYPE_CHECKING:
     from solver import Family, Toughness
+    from solver.toughness import ToughnessCalibration
 
 AngularFunction = Callable[[Array], Array]
 
@@ -36,12 +37,14 @@ class Law:
     n: int = 2
     frequency: int = 1
 
-    def toughness(self, axis: float = 0.0, calibration: str = "lattice") -> Toughness:
+    def toughness(
+        self, axis: float = 0.0, calibration: ToughnessCalibration = "lattice"
+    ) -> Toughness:
         """The solver's law with G2 = 1."""
         from solver import Toughness
 
         second = None if self.ratio == 1.0 else 1.0
-        return Toughness(self.ratio, second, self.n, self.frequency, axis, calibration)  # type: ignore[arg-type]
+        return Toughness(self.ratio, second, self.n, self.frequency, axis, calibration)
 
 
 #: The laws of Figs. 14–18, and a constant w_c.
@@ -91,8 +94,9 @@ def counted_cut(family: Family, critical: Array, direction: tuple[int, int]) -> 
 def cuts(family: Family, distortion: float = 1.0) -> float:
     """Largest relative deviation of a counted cut from the fracture energy, both directions."""
     worst = 0.0
-    plain = [(law, "lattice") for law in LAWS]
-    for law, calibration in (*plain, (LAWS[0], "even"), (Law(1.8, 8), "even")):
+    judged: list[tuple[Law, ToughnessCalibration]] = [(law, "lattice") for law in LAWS]
+    judged += [(LAWS[0], "even"), (Law(1.8, 8), "even")]
+    for law, calibration in judged:
         for a, b in AXES:
             toughness = law.toughness(float(np.arctan2(b, a)), calibration)
             critical = distortion * toughness.energies(family)

@@ -90,7 +90,6 @@ def _case(material: str, name: str, shows: str) -> Case:
             Check(main, "rms", {30: 8.0, 60: 4.0}, source="issue F"),
             Check(main, "largest", {30: 12.0, 60: 8.0}, source="issue F"),
             Check(main, "mirror", {30: 1e-6}, source="issue F"),
-            Check(main, "seconds", {60: 20.0, 120: 120.0}, source="issue F"),
             *straight,
         ),
         quantities=QUANTITIES,

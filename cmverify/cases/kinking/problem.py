@@ -21,6 +21,9 @@ from cmverify.case import Array
 if TYPE_CHECKING:
     from solver import ElasticTensor
     from solver.fracture import Growth
+    from solver.programme import Control
+    from solver.surface import Surface
+    from solver.toughness import ToughnessCalibration
 
 #: Name here, in `cmverify.materials`, in `references.tables.stored_kinks`.
 MATERIALS = {"silicon": "silicon", "fully anisotropic": "anisotropic"}
@@ -63,9 +66,9 @@ class Kink:
     m: int = 5
     front: float = 1.0
     turn: float = 0.0
-    surface: str = "volume"
-    toughness: str = "lattice"
-    control: str = "following"
+    surface: Surface = "volume"
+    toughness: ToughnessCalibration = "lattice"
+    control: Control = "following"
     mirrored: bool = False
 
     @property
@@ -146,7 +149,7 @@ def grow_kink(kink: Kink, reach: float = REACH) -> Grown:
         m=kink.m,
         material=kink.solid(),
         calibration="lattice",
-        surface=kink.surface,  # type: ignore[arg-type]
+        surface=kink.surface,
         cracks=[Crack((float(mouth[0]), float(mouth[1])), (0.0, 0.0))],
         supports=[
             Support.layer(
@@ -156,8 +159,8 @@ def grow_kink(kink: Kink, reach: float = REACH) -> Grown:
     )
     run = grow(
         scene,
-        Toughness(1.0, calibration=kink.toughness),  # type: ignore[arg-type]
-        Programme(control=kink.control),  # type: ignore[arg-type]
+        Toughness(1.0, calibration=kink.toughness),
+        Programme(control=kink.control),
         batch=batch(kink),
         tolerance=1e-6,
         until=lambda run: run.advance >= reach,

@@ -50,8 +50,8 @@ def test_quick_level_holds_and_every_check_can_fail(case):
     plan = case.methods[0].run.args[0]
     found = measure.study(plan, 30)
     assert not failed(case, {30: found})
-    # All angles 15° off, a path that is not the mirrored one's image by a hundredth of a cell,
-    # and a minute more: what the bounds are there to notice.
+    # All angles 15° off and a path that is not the mirrored one's image by a hundredth of a cell:
+    # what the bounds are there to notice.
     off = dict(found.quantities)
     off |= {"rms": off["rms"] + 15.0, "largest": off["largest"] + 15.0, "mirror": 0.01 / 30}
     if "straight" in off:
@@ -59,8 +59,6 @@ def test_quick_level_holds_and_every_check_can_fail(case):
     wrong = replace(found, quantities=off)
     expected = {"rms", "largest", "mirror"} | ({"straight"} & set(off))
     assert failed(case, {30: wrong}) == expected
-    slow = replace(found, quantities=found.quantities | {"seconds": 200.0})
-    assert "seconds" in failed(case, {60: slow})
 
 
 def test_a_material_that_is_not_its_own_mirror_image_shows():
