@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from cmverify.case import Level
-from cmverify.speed.command import speed
-from cmverify.stability.command import stability
+from cmverify.studies.speed.command import speed
+from cmverify.studies.stability.command import stability
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -30,7 +30,7 @@ def list_cases(names: Names = None) -> None:
     """List cases with their tags and the spacings (a/n) of each level."""
     from rich.console import Console
 
-    from cmverify import terminal
+    from cmverify.report import terminal
 
     Console().print(terminal.cases_table(_select(names)))
 
@@ -51,9 +51,10 @@ def run(
 
     from rich.console import Console
 
-    from cmverify import environment, runner, summary, terminal
-    from cmverify.progress import LiveProgress
-    from cmverify.threads import available_cores, threads_per_worker
+    from cmverify.report import summary, terminal
+    from cmverify.run import environment, runner
+    from cmverify.run.progress import LiveProgress
+    from cmverify.run.threads import available_cores, threads_per_worker
 
     cases = _select(names)
     jobs = jobs or available_cores()
@@ -92,7 +93,7 @@ def report(
     """Render the report of a finished run again."""
     from rich.console import Console
 
-    from cmverify import summary
+    from cmverify.report import summary
 
     judged, info = _finished(out)
     _write(judged, info, out, json, Console())
@@ -108,7 +109,7 @@ def precision(
     """Show error against time of a finished run; ★ marks what nothing else beats."""
     from rich.console import Console
 
-    from cmverify import terminal
+    from cmverify.report import terminal
 
     judged, info = _finished(out)
     wanted = {case.name for case in _select(names)}
@@ -164,8 +165,8 @@ def solve(
     """Solve a scene file, or let its cracks grow, and write its fields as .vtu and .npz."""
     from rich.console import Console
 
-    from cmverify import fracture_file, scene_file
-    from cmverify.export import write_arrays
+    from cmverify.exchange import fracture_table, scene_file
+    from cmverify.exchange.export import write_arrays
 
     base = out or scene.with_suffix("")
     paths: tuple[Path, ...]
@@ -178,8 +179,8 @@ def solve(
             paths = write_arrays(solution.points, scene_file.fields(solution), base)
         else:
             run = plan.run(described)
-            said = fracture_file.summary(run)
-            paths = fracture_file.write(run, scene_file.fields(run.solution), base)
+            said = fracture_table.summary(run)
+            paths = fracture_table.write(run, scene_file.fields(run.solution), base)
     except (ValueError, RuntimeError) as error:
         _refuse(str(error))
     console = Console()
@@ -208,8 +209,9 @@ def _select(names: list[str] | None):  # type: ignore[no-untyped-def]
 
 def _finished(out: Path):  # type: ignore[no-untyped-def]
     """Verdicts and info of the run in a folder, judged anew by the checks as they are now."""
-    from cmverify import results, summary
     from cmverify.cases import registry
+    from cmverify.report import summary
+    from cmverify.run import results
 
     try:
         info = summary.load_info(out)
@@ -222,8 +224,9 @@ def _finished(out: Path):  # type: ignore[no-untyped-def]
 
 
 def _write(judged, info, out: Path, json: Path | None, console) -> None:  # type: ignore[no-untyped-def]
-    from cmverify import results, summary
+    from cmverify.report import summary
     from cmverify.report.build import build
+    from cmverify.run import results
 
     numbers = summary.as_json(judged, info)
     for path in {out / "results.json", json or out / "results.json"}:

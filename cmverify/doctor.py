@@ -7,8 +7,8 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from cmverify import environment
-from cmverify.threads import VARIABLES, available_cores
+from cmverify.run import environment
+from cmverify.run.threads import VARIABLES, available_cores
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,6 @@ Scene -> Lattice + Family -> Moduli + Bonds -> Operator -> statics -> Solution -
 """
 
 from . import fracture, recovery
-from .conditions import Load, Support
 from .errors import (
     CalibrationError,
     ConvergenceError,
@@ -14,15 +13,16 @@ from .errors import (
     SceneError,
     ToughnessError,
 )
-from .family import Family
-from .influence import Influence
-from .laws import Cosine, Fourfold, TwoHarmonic, UniformShear
-from .programme import Programme
-from .regions import Crack, Region, disc, polygon, rectangle
+from .fracture.programme import Programme
+from .fracture.toughness import Toughness
+from .geometry.regions import Crack, Region, disc, polygon, rectangle
+from .material.family import Family
+from .material.influence import Influence
+from .material.laws import Cosine, Fourfold, TwoHarmonic, UniformShear
+from .material.tensors import ConductivityTensor, ElasticTensor
+from .problem.conditions import Load, Support
 from .scene import Discretisation, Scene
 from .solution import Solution, Statistics
-from .tensors import ConductivityTensor, ElasticTensor
-from .toughness import Toughness
 
 __all__ = [
     "CalibrationError",

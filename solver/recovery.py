@@ -14,8 +14,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from . import crack_path
-from .micromoduli import ConductiveModuli, ElasticModuli
+from .fracture import crack_path
+from .material.calibration import ConductiveModuli, ElasticModuli
 from .solution import Solution
 
 Array = NDArray[np.float64]
@@ -277,7 +277,7 @@ def strain_energy_density(solution: Solution) -> Array:
 
 def damage(solution: Solution) -> Array:
     """Share of each particle's family that is cut or broken (Eq. 105), shape (N,); see
-    `solver.crack_path.damage`. NaN at parts that were set aside.
+    `solver.fracture.crack_path.damage`. NaN at parts that were set aside.
     """
     return _aside(solution, crack_path.damage(solution.discretisation.bonds))
 

@@ -16,22 +16,22 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from . import mechanisms
-from .bonds import Bonds
-from .conditions import Load, Support, evaluate
+from .bonds.bonds import Bonds
+from .bonds.volume_method import Surface, check_surface
 from .errors import MechanismError, SceneError
-from .family import AreaRule, Family
-from .influence import CONSTANT, Influence, influence
-from .lattice import Lattice
-from .laws import AngularLaw
-from .micromoduli import Calibration, Moduli, calibrate
-from .operators import BondOperator
-from .outline import Outline
-from .quadrature import Quadrature
-from .regions import Crack, Region
-from .stability import Stability, require_admissible
-from .surface import Surface, check_surface
-from .tensors import ElasticTensor, Material
+from .geometry.edge_quadrature import Quadrature
+from .geometry.lattice import Lattice
+from .geometry.outline import Outline
+from .geometry.regions import Crack, Region
+from .material.calibration import Calibration, Moduli, calibrate
+from .material.family import AreaRule, Family
+from .material.influence import CONSTANT, Influence, influence
+from .material.laws import AngularLaw
+from .material.stability import Stability, require_admissible
+from .material.tensors import ElasticTensor, Material
+from .operators.bond_operator import BondOperator
+from .problem import mechanisms
+from .problem.conditions import Load, Support, evaluate
 
 if TYPE_CHECKING:
     from .solution import Solution
@@ -59,7 +59,7 @@ class Scene:
         Horizon in cells.
     calibration : {"continuum", "lattice", "positive"}
     law : angular law, optional
-        See `solver.micromoduli.calibrate` for the default.
+        See `solver.material.calibration.calibrate` for the default.
     influence : str or Influence
     area_rule : {"partial", "full", "exact"}
     surface : {"volume", "none", "extrapolated"}
@@ -146,7 +146,7 @@ class Scene:
         ----------
         growing : bool
             Whether cracks are to grow: then the faces of those that exist share no node at their
-            tips (`solver.outline`).
+            tips (`solver.geometry.outline`).
 
         Raises
         ------
@@ -155,8 +155,8 @@ class Scene:
         return Discretisation.of(self, growing)
 
     def solve(self, tolerance: float = 1e-10, **options: Any) -> Solution:
-        """Static (or steady) solution; see `solver.statics.solve`."""
-        from .statics import solve
+        """Static (or steady) solution; see `solver.analyses.statics.solve`."""
+        from .analyses.statics import solve
 
         return solve(self.discretise(), tolerance=tolerance, **options)
 

@@ -26,7 +26,7 @@ class Statistics:
     method : str
         Solver and preconditioner.
     sign, margin : str, float
-        Of the operator, see `solver.stability.Stability`.
+        Of the operator, see `solver.material.stability.Stability`.
     iterations : int
     residual : float
         |b − K x| / |b|, evaluated at the end with the operator itself.

@@ -51,7 +51,7 @@ def test_packages_know_whom_they_may(path):
     [
         ("solver", "import references.analytic"),
         ("solver", "def late():\n    from cmverify import case"),
-        ("references", "from solver.tensors import ElasticTensor"),
+        ("references", "from solver.material.tensors import ElasticTensor"),
         ("references", "import importlib\nimportlib.import_module('solver')"),
     ],
 )
@@ -105,7 +105,7 @@ def run(code: str) -> str:
 
 def test_importing_the_solver_compiles_nothing_and_loads_no_other_package():
     out = run(
-        "import sys, solver, solver.statics, solver.kernels as k\n"
+        "import sys, solver, solver.analyses.statics, solver.operators.kernels as k\n"
         "print([n for n in ('references', 'cmverify', 'gmsh', 'skfem', 'matplotlib', 'sympy')"
         " if n in sys.modules])\n"
         "print(sum(len(f.signatures) for f in vars(k).values() if hasattr(f, 'py_func')))\n"

@@ -6,7 +6,7 @@ import math
 
 from cmverify.case import Level, Measurement
 from cmverify.cases import registry
-from cmverify.worker import measure, warm_up
+from cmverify.run.worker import measure, warm_up
 
 CASES = ["disc-cubic", "disc-exponential", "crack-tip-I", "crack-tip-II"]
 METHODS = ["bond/lattice", "bond/positive", "fem/P2"]

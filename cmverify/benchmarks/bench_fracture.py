@@ -29,7 +29,7 @@ class Growth:
         return found
 
     def _grow(self, resolution: int, advance: float = 0.1) -> Any:
-        from cmverify.speed.scenes import crack_tip
+        from cmverify.studies.speed.scenes import crack_tip
         from solver import Programme, Toughness, fracture
 
         return fracture.grow(

@@ -14,7 +14,7 @@ class CrackTip:
 
     def setup(self, resolution: int) -> None:
         """Compile, and keep the scene."""
-        from cmverify.speed.scenes import crack_tip
+        from cmverify.studies.speed.scenes import crack_tip
 
         self.scene = crack_tip(resolution)
         self.scene.solve(1e-8)

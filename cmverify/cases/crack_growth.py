@@ -26,8 +26,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cmverify import adapters
 from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measurement, Method, OrderBand
+from cmverify.cases.common import adapters
 
 if TYPE_CHECKING:
     from solver import Scene
@@ -155,7 +155,7 @@ def critical_intensity(strip: Strip) -> float:
 
 def intensity(strip: Strip, n: int) -> float:
     """K_I of the strip at unit load by the interaction integral."""
-    from cmverify.sif import interaction_integral
+    from cmverify.cases.common.sif import interaction_integral
 
     solution = strip.scene(n).solve()
     tip = (-np.sin(strip.angle) * strip.shift(n), np.cos(strip.angle) * strip.shift(n))

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cmverify import adapters, sif
 from cmverify.case import (
     Array,
     Case,
@@ -29,12 +28,13 @@ from cmverify.case import (
     Method,
     OrderBand,
 )
-from cmverify.norms import relative_l2
+from cmverify.cases.common import adapters, sif
+from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
     from solver import Solution
-    from solver.micromoduli import Calibration
-    from solver.surface import Surface
+    from solver.bonds.volume_method import Surface
+    from solver.material.calibration import Calibration
 
 #: C1111 = C, C2222 = 4C/5, C1122 = C/5, C1212 = C/3, C1112 = C/10, C2212 = C/6; order 11, 22, 12.
 STIFFNESS = (

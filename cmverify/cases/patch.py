@@ -15,9 +15,9 @@ from functools import partial
 
 import numpy as np
 
-from cmverify import adapters
 from cmverify.case import Array, Case, Check, Level, Measurement, Method
-from cmverify.norms import relative_l2
+from cmverify.cases.common import adapters
+from cmverify.judge.norms import relative_l2
 
 SIGNS = ("positive", "zero", "negative")
 TENSORS = 6  # admissible ones tried of each sign

@@ -18,7 +18,7 @@ from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measuremen
 
 if TYPE_CHECKING:
     from solver import Family, Toughness
-    from solver.toughness import ToughnessCalibration
+    from solver.fracture.toughness import ToughnessCalibration
 
 AngularFunction = Callable[[Array], Array]
 
@@ -133,7 +133,7 @@ def bone(family: Family, distortion: float = 1.0) -> float:
 
     2105.6 J/m² across the fibres and 989.05 along them: Eq. 109 corrected, proved in the errata.
     """
-    from cmverify.materials import bone_fracture_energies
+    from cmverify.cases.common.materials import bone_fracture_energies
     from solver import Toughness
 
     across, along = bone_fracture_energies()

@@ -13,10 +13,10 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cmverify import precision
 from cmverify.case import Case, LinePlot, Measurement, nothing_to_compile
-from cmverify.results import write_text
-from cmverify.summary import CaseResult, Row, RunInfo, all_passed, table
+from cmverify.judge import precision
+from cmverify.report.summary import CaseResult, Row, RunInfo, all_passed, table
+from cmverify.run.results import write_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -226,7 +226,7 @@ def _comparison(result: CaseResult, points: list[precision.Point]) -> list[dict[
 
 def _export(result: CaseResult, folder: Path) -> list[str]:
     """Write the featured fields; returns their paths relative to the page."""
-    from cmverify.export import write_fields
+    from cmverify.exchange.export import write_fields
 
     found = result.finest(result.case.featured)
     if found is None or found[1].fields is None:

@@ -17,8 +17,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 from matplotlib.tri import Triangulation
 
 from cmverify.case import Case, Field, FieldSet, LinePlot, Measurement
-from cmverify.convergence import fitted_order
-from cmverify.precision import Point
+from cmverify.judge.convergence import fitted_order
+from cmverify.judge.precision import Point
 from cmverify.report import style
 
 ROUNDING = 1e-12

@@ -7,10 +7,10 @@ import sys
 import pytest
 from typer.testing import CliRunner
 
-from cmverify import environment, results, runner
 from cmverify.cases import registry
 from cmverify.cli import app
 from cmverify.doctor import examine
+from cmverify.run import environment, results, runner
 from references.fem import mesh
 from references.fenicsx import bridge
 from tests.cmverify import toy_registry
@@ -67,7 +67,7 @@ def test_wrong_names_and_empty_folders_are_refused(tmp_path):
 
 
 def test_solve_writes_fields_and_names_a_wrong_key(tmp_path):
-    from tests.cmverify.test_scene_file import SMALL
+    from tests.cmverify.exchange.test_scene_file import SMALL
 
     scene = tmp_path / "scene.toml"
     scene.write_text(SMALL)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from cmverify import results, summary, terminal, worker
 from cmverify.case import Case, Level
-from cmverify.summary import CaseResult
+from cmverify.report import summary, terminal
+from cmverify.report.summary import CaseResult
+from cmverify.run import results, worker
 
 
 class Measurements:

@@ -15,13 +15,13 @@ from solver import (
     TwoHarmonic,
     recovery,
 )
-from solver.micromoduli import calibrate
-from solver.operators import BondOperator
+from solver.material.calibration import calibrate
+from solver.material.stability import assess
+from solver.operators.bond_operator import BondOperator
 from solver.recovery import displacement_gradient
 from solver.solution import Solution
-from solver.stability import assess
 from tests.solver.bodies import DISC, FIG_7, Cells, block, conductivities, exact, few, masks, voigts
-from tests.solver.test_bonds import pair_factors
+from tests.solver.bonds.test_bonds import pair_factors
 
 STRAIN = np.array([[0.7, -0.2], [0.5, 0.3]])
 

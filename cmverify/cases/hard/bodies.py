@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from cmverify import adapters
 from cmverify.case import Array, Check, Level, Measurement, Method, OrderBand
-from cmverify.norms import relative_l2
+from cmverify.cases.common import adapters
+from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
     from references.analytic.elasticity import PolynomialDisplacement
-    from solver.micromoduli import Calibration
+    from solver.material.calibration import Calibration
 
 SEED = 2022
 TOLERANCE = 1e-13

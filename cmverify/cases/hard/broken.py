@@ -16,9 +16,9 @@ from cmverify.case import Array
 
 if TYPE_CHECKING:
     from solver import Discretisation, Solution
-    from solver.family import Family
-    from solver.lattice import Lattice
-    from solver.tensors import Material
+    from solver.geometry.lattice import Lattice
+    from solver.material.family import Family
+    from solver.material.tensors import Material
 
 Mask = NDArray[np.bool_]
 Broken = Callable[["Lattice", "Family"], Mask]

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cmverify import adapters, materials
 from cmverify.case import Case, Check, Level, Measurement, Method, OrderBand
-from cmverify.cases.hard import bodies, symbols
-from cmverify.norms import relative_l2
+from cmverify.cases.common import adapters, bond_energies, materials
+from cmverify.cases.hard import bodies
+from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
-    from solver.micromoduli import Calibration
+    from solver.material.calibration import Calibration
 
 HORIZONS = (3, 5, 7)
 LADDER = {Level.QUICK: (24,), Level.STANDARD: (24, 48, 96), Level.PAPER: (24, 48, 96, 160)}
@@ -89,7 +89,9 @@ def measure(conductor: Conductor, n: int) -> Measurement:
         try:
             solution = _solve(conductor, n, m, cubic)
         except CalibrationError as error:
-            exists = [symbols.non_negative_moduli_exist(Family(k), tensor) for k in range(m, 10)]
+            exists = [
+                bond_energies.non_negative_moduli_exist(Family(k), tensor) for k in range(m, 10)
+            ]
             named = exists.index(True) + m if any(exists) else None
             right = not exists[0] and named is not None and f"exist at m = {named}" in str(error)
             found["unexplained"] += not right

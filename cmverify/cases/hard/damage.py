@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cmverify import adapters, materials
 from cmverify.case import Case, Check, Level, Measurement, Method
+from cmverify.cases.common import adapters, materials
 from cmverify.cases.hard import bodies, broken
 from cmverify.cases.hard.tensors import tensor
-from cmverify.norms import relative_l2
+from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
-    from solver.tensors import Material
+    from solver.material.tensors import Material
 
 TOLERANCE = 1e-12
 # The sparse factorisation that judges takes a minute at 120.
@@ -55,7 +55,7 @@ def warm_up() -> None:
 def solve(body: Body, n: int) -> Measurement:
     """Solve, and compare with a factorisation; or be refused, and look at the spectrum."""
     from solver import NegativeCurvatureError
-    from solver.statics import solve as solve_statics
+    from solver.analyses.statics import solve as solve_statics
 
     material = body.material()
     discretisation = broken.scene(

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from cmverify import adapters
 from cmverify.case import Case, Check, Level, Measurement, Method
+from cmverify.cases.common import adapters
 from cmverify.cases.hard import bodies
 from cmverify.cases.hard.tensors import tensor
 

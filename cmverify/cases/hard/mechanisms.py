@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cmverify import adapters
 from cmverify.case import Array, Case, Check, Level, Measurement, Method
+from cmverify.cases.common import adapters
 from cmverify.cases.hard import bodies, broken
-from cmverify.norms import relative_l2
+from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from solver.family import Family
-    from solver.lattice import Lattice
+    from solver.geometry.lattice import Lattice
+    from solver.material.family import Family
 
 TOLERANCE = 1e-12
 LADDER = {Level.QUICK: (24,), Level.STANDARD: (24, 60), Level.PAPER: (24, 60)}

@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Any, Literal
 
-from cmverify import materials
 from cmverify.case import Case, Level
+from cmverify.cases.common import materials
 from cmverify.cases.hard import bodies
 from cmverify.cases.hard.bodies import Row, Solid
 

@@ -16,7 +16,8 @@ from itertools import islice
 import numpy as np
 
 from cmverify.case import Array, Case, Check, Level, Measurement, Method
-from cmverify.cases.hard import bodies, symbols
+from cmverify.cases.common import bond_energies
+from cmverify.cases.hard import bodies
 
 M = 3
 #: Cells along an edge, and how many tensors are tried there.
@@ -41,7 +42,7 @@ def attempt(voigt: Array, n: int, calibration: str) -> tuple[str, float, float]:
     that other means do not confirm; "rescued" is appended where what it recommends was solved.
     """
     from solver import CalibrationError, ElasticTensor, Family, InadmissibleMaterialError
-    from solver.micromoduli import calibrate
+    from solver.material.calibration import calibrate
 
     exact = bodies.field_of(voigt, (1, 2))
     try:
@@ -49,18 +50,21 @@ def attempt(voigt: Array, n: int, calibration: str) -> tuple[str, float, float]:
     except (CalibrationError, InadmissibleMaterialError) as error:
         message = str(error)
         if isinstance(error, CalibrationError):
-            kind, right = "unrepresentable", not symbols.non_negative_moduli_exist(Family(M), voigt)
+            kind, right = (
+                "unrepresentable",
+                not bond_energies.non_negative_moduli_exist(Family(M), voigt),
+            )
         else:
-            wave = symbols.named_wave(message)
+            wave = bond_energies.named_wave(message)
             moduli = calibrate(Family(M), ElasticTensor(voigt), calibration)  # type: ignore[arg-type]
             kind = "inadmissible"
-            right = wave is not None and symbols.is_unstable(Family(M), moduli, wave)  # type: ignore[arg-type]
+            right = wave is not None and bond_energies.is_unstable(Family(M), moduli, wave)  # type: ignore[arg-type]
     else:
         worst = max(bodies.errors(solution, exact).values())
         return "solved", worst, float(solution.statistics.iterations)
     if not right:
         return "unexplained", 0.0, 0.0
-    remedy = symbols.named_remedy(message)
+    remedy = bond_energies.named_remedy(message)
     if remedy is None:
         return kind, 0.0, 0.0
     m = remedy.pop("m", M)

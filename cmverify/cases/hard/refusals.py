@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from cmverify import materials
 from cmverify.case import Array, Case, Check, Level, Measurement, Method
-from cmverify.cases.hard import bodies, symbols
+from cmverify.cases.common import bond_energies, materials
+from cmverify.cases.hard import bodies
 from cmverify.cases.hard.tensors import forty_to_one, tensor
 
 LADDER = dict.fromkeys(Level, (24,))
@@ -39,19 +39,19 @@ class Refusal:
 def _confirmed(refusal: Refusal, voigt: Array, m: float, message: str) -> bool:
     """Whether the reason holds by other means than the solver's."""
     from solver import ElasticTensor, Family
-    from solver.micromoduli import ElasticModuli, calibrate
+    from solver.material.calibration import ElasticModuli, calibrate
 
     family, settings = Family(m), refusal.settings
     if refusal.error == "CalibrationError":
         horizons = range(2, 9) if "at any m" in message else (m,)
-        return not any(symbols.non_negative_moduli_exist(Family(k), voigt) for k in horizons)
+        return not any(bond_energies.non_negative_moduli_exist(Family(k), voigt) for k in horizons)
     calibration = settings.get("calibration", "lattice")
     moduli = calibrate(family, ElasticTensor(voigt), calibration, _law(settings))
     assert isinstance(moduli, ElasticModuli)
     if "passes through zero" in message:
-        return symbols.rotation_changes_sign(family, moduli)
-    wave = symbols.named_wave(message)
-    return wave is not None and symbols.is_unstable(family, moduli, wave)
+        return bond_energies.rotation_changes_sign(family, moduli)
+    wave = bond_energies.named_wave(message)
+    return wave is not None and bond_energies.is_unstable(family, moduli, wave)
 
 
 def _law(settings: dict[str, Any]) -> Any:
@@ -78,7 +78,7 @@ def refuse(refusal: Refusal, n: int) -> Measurement:
         message = str(error)
         found["refused"] = float(refusal.says in message)
         found["confirmed"] = float(_confirmed(refusal, voigt, m, message))
-        advice = symbols.named_remedy(message)
+        advice = bond_energies.named_remedy(message)
         found["advice"] = float((advice is not None) == refusal.remedy)
         if advice is not None:
             solution = bodies.solve(voigt, exact, n, advice.pop("m", m), **advice)

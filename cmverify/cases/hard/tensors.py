@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from functools import partial
 
-from cmverify import materials
 from cmverify.case import Array, Case
+from cmverify.cases.common import materials
 from cmverify.cases.hard import bodies
 from cmverify.cases.hard.bodies import Row, Solid
 
 
 def tensor(name: str, degrees: float = 0.0) -> Array:
-    """A solid of `cmverify.materials`, turned."""
+    """A solid of `cmverify.cases.common.materials`, turned."""
     return materials.turned(materials.TENSORS[name], degrees)
 
 

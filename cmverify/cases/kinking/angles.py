@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cmverify import materials
 from cmverify.case import Array
+from cmverify.cases.common import materials
 from cmverify.cases.kinking.problem import MATERIALS, REACH
 
 if TYPE_CHECKING:

@@ -15,17 +15,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cmverify import materials
 from cmverify.case import Array
+from cmverify.cases.common import materials
 
 if TYPE_CHECKING:
     from solver import ElasticTensor
+    from solver.bonds.volume_method import Surface
     from solver.fracture import Growth
-    from solver.programme import Control
-    from solver.surface import Surface
-    from solver.toughness import ToughnessCalibration
+    from solver.fracture.programme import Control
+    from solver.fracture.toughness import ToughnessCalibration
 
-#: Name here, in `cmverify.materials`, in `references.tables.stored_kinks`.
+#: Name here, in `cmverify.cases.common.materials`, in `references.tables.stored_kinks`.
 MATERIALS = {"silicon": "silicon", "fully anisotropic": "anisotropic"}
 ANGLES = (0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 75.0, 90.0)  # α_K, degrees
 #: Kinks grow to a quarter of the radius: the edge of the paper's square of side a/2.
@@ -139,8 +139,8 @@ class Grown:
 def grow_kink(kink: Kink, reach: float = REACH) -> Grown:
     """Let the crack grow until its path leaves the circle of radius `reach` about the old tip."""
     from solver import Crack, Programme, Scene, Support, Toughness, disc
-    from solver.crack_path import SHORT
     from solver.fracture import grow
+    from solver.fracture.crack_path import SHORT
 
     mouth = -1.5 * kink.axes[:, 0]
     scene = Scene(

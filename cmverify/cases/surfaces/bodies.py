@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from cmverify.case import Array, Check, Level, Measurement, Method, OrderBand
-from cmverify.norms import relative_l2
+from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
     from solver import Support
@@ -201,7 +201,7 @@ def converging(
 
 def statistics_of(solution: Any) -> dict[str, float | int | str]:
     """Columns of the method table, and what surfaces cost."""
-    from cmverify import adapters
+    from cmverify.cases.common import adapters
 
     found = adapters.solver_statistics(solution.statistics)
     return {**found, "bond factors (bytes)": solution.discretisation.bonds.nbytes}

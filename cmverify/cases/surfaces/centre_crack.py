@@ -12,8 +12,8 @@ from functools import cache, partial
 
 import numpy as np
 
-from cmverify import adapters, sif
 from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measurement
+from cmverify.cases.common import adapters, sif
 from cmverify.cases.surfaces import bodies
 from cmverify.cases.surfaces.bodies import Treatment
 

@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from cmverify import adapters, materials
 from cmverify.case import Array, Case, Field, FieldSet, Measurement
+from cmverify.cases.common import adapters, materials
 from cmverify.cases.surfaces import bodies
 from cmverify.cases.surfaces.bodies import Treatment
-from cmverify.norms import relative_l2
+from cmverify.judge.norms import relative_l2
 
 STRESS = (1.0, -0.4, 0.3)
 GRADIENT = (1.0, -0.5)

@@ -11,12 +11,12 @@ from functools import cache, partial
 
 import numpy as np
 
-from cmverify import adapters
 from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measurement, OrderBand
+from cmverify.cases.common import adapters
 from cmverify.cases.surfaces import bodies
 from cmverify.cases.surfaces.bodies import Treatment
 from cmverify.cases.surfaces.round import hoop_stress
-from cmverify.norms import relative_l2
+from cmverify.judge.norms import relative_l2
 
 HALF_WIDTH = 4.0
 FEM = "finite elements"

@@ -14,11 +14,11 @@ from typing import Any, Literal
 
 import numpy as np
 
-from cmverify import adapters, materials
 from cmverify.case import Array, Case, Curve, Field, FieldSet, LinePlot, Measurement
+from cmverify.cases.common import adapters, materials
 from cmverify.cases.surfaces import bodies
 from cmverify.cases.surfaces.bodies import Treatment
-from cmverify.norms import relative_l2
+from cmverify.judge.norms import relative_l2
 
 Shape = Literal["disc", "hole"]
 #: Of the hole; the plate has width 1, so that 100 cells across are 20 cells per radius.

@@ -8,7 +8,7 @@ import pytest
 from cmverify.case import Level, Measurement
 from cmverify.cases import crack_growth
 from cmverify.cases.crack_growth import CASES, STRIPS, Strip
-from cmverify.verdict import judge
+from cmverify.judge.verdict import judge
 
 CASE = CASES[0]
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cmverify import materials
+from cmverify.cases.common import bond_energies, materials
 from cmverify.cases.hard import (
     CASES,
     bodies,
@@ -19,12 +19,11 @@ from cmverify.cases.hard import (
     poisson,
     random_tensors,
     refusals,
-    symbols,
 )
-from cmverify.verdict import judge
+from cmverify.judge.verdict import judge
 from solver import ElasticTensor, Family, UniformShear
-from solver.micromoduli import calibrate, representable
-from solver.stability import symbol
+from solver.material.calibration import calibrate, representable
+from solver.material.stability import symbol
 
 few = settings(derandomize=True, deadline=None, max_examples=15)
 
@@ -49,7 +48,7 @@ def test_the_energy_of_a_wave_is_the_symbol(seed, k, m):
     solid = ElasticTensor(voigt @ voigt.T + 0.5 * np.eye(3))
     family = Family(m, 1.0)
     moduli = calibrate(family, solid, "lattice", UniformShear())
-    found = symbols.energy_of_wave(family, moduli, np.array(k))
+    found = bond_energies.energy_of_wave(family, moduli, np.array(k))
     wanted = symbol(family, moduli, np.array(k))
     np.testing.assert_allclose(found.conj(), wanted, atol=1e-11 * np.abs(wanted).max())
 
@@ -59,19 +58,19 @@ def test_instability_of_a_wave(nu, unstable):
     family = Family(5)
     moduli = calibrate(family, ElasticTensor.isotropic(1.0, nu, "strain"))
     # The worst waves lie along the axes at about 0.91 rad per cell.
-    assert symbols.is_unstable(family, moduli, np.array([0.91, 0.0])) == unstable
+    assert bond_energies.is_unstable(family, moduli, np.array([0.91, 0.0])) == unstable
 
 
 @pytest.mark.parametrize("law", [None, UniformShear()])
 def test_the_energy_of_a_strain_is_the_tensor(law):
     voigt, family = materials.TENSORS["Fig. 2"], Family(3)
     moduli = calibrate(family, ElasticTensor(voigt), "lattice", law)
-    whole = symbols.energy_of_strain(family, moduli)
+    whole = bond_energies.energy_of_strain(family, moduli)
     condensed = whole[:3, :3] - np.outer(whole[:3, 3], whole[3, :3]) / whole[3, 3]
     np.testing.assert_allclose(condensed, voigt, atol=1e-12)
-    assert not symbols.is_unstable(family, moduli, np.zeros(2))
+    assert not bond_energies.is_unstable(family, moduli, np.zeros(2))
     inverted = type(moduli)(-moduli.normal, moduli.shear)
-    assert symbols.is_unstable(family, inverted, np.zeros(2))
+    assert bond_energies.is_unstable(family, inverted, np.zeros(2))
 
 
 @few
@@ -80,7 +79,7 @@ def test_linear_program_agrees_with_the_solver_on_existence(seed, m):
     factor = np.random.default_rng(seed).normal(size=(3, 3))
     voigt = factor @ factor.T + 0.3 * np.eye(3)
     if voigt[2, 2] > voigt[0, 1]:
-        found = symbols.non_negative_moduli_exist(Family(m), voigt)
+        found = bond_energies.non_negative_moduli_exist(Family(m), voigt)
         assert found == representable(Family(m), ElasticTensor(voigt))
 
 
@@ -96,7 +95,7 @@ def test_pivots_count_negative_eigenvalues():
 
 
 def test_remedies_are_read_from_messages():
-    read = symbols.named_remedy
+    read = bond_energies.named_remedy
     assert read("… Use calibration='lattice' (stable, margin 1).") == {"calibration": "lattice"}
     found = read("… Use calibration='positive', law=UniformShear() at m = 4 (stable, margin 1).")
     assert found == {"calibration": "positive", "law": UniformShear(), "m": 4}
@@ -208,7 +207,7 @@ def test_one_percent_is_seen_in_what_refusals_recommend(softened):
 
 def test_refusals_that_nothing_confirms_are_counted(monkeypatch):
     monkeypatch.setattr(random_tensors, "COUNTS", {14: 6})
-    monkeypatch.setattr(symbols, "non_negative_moduli_exist", lambda *_: True)
+    monkeypatch.setattr(bond_energies, "non_negative_moduli_exist", lambda *_: True)
     found = random_tensors.population("positive", 14)
     assert "unexplained" in failed("hard-random", "bond/positive", found, 14)
 

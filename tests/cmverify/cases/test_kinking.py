@@ -7,7 +7,7 @@ import pytest
 
 from cmverify.cases.kinking import CASES, angles, measure, problem
 from cmverify.cases.kinking.problem import Kink
-from cmverify.verdict import judge
+from cmverify.judge.verdict import judge
 
 SILICON, ANISOTROPIC = CASES
 

@@ -5,7 +5,7 @@ import pytest
 
 from cmverify.cases.surfaces import CASES, bodies, centre_crack, homogeneous, pulled_plate
 from cmverify.cases.surfaces import round as curved
-from cmverify.verdict import judge
+from cmverify.judge.verdict import judge
 from references.analytic.hole import edge_hoop_stress
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from cmverify.cases import toughness
-from cmverify.verdict import judge
+from cmverify.judge.verdict import judge
 from solver import Family
 
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from cmverify import materials
 from cmverify.cases import turned_energy
-from cmverify.verdict import judge
+from cmverify.cases.common import materials
+from cmverify.judge.verdict import judge
 from solver import ElasticTensor
 
 (CASE,) = turned_energy.CASES
@@ -66,9 +66,9 @@ def test_continuum_energies_are_those_of_the_printed_formulas(m, solid):
 
 
 def test_relaxed_rotations_change_nothing():
-    from cmverify.cases.hard.symbols import energy_of_strain
+    from cmverify.cases.common.bond_energies import energy_of_strain
     from solver import Family
-    from solver.micromoduli import calibrate
+    from solver.material.calibration import calibrate
 
     for calibration in turned_energy.CALIBRATIONS:
         solid = ElasticTensor(materials.turned(turned_energy.SOLIDS["anisotropic"], 25.0))

@@ -1,0 +1,1 @@
+"""What several cases share: materials, scenes, adapters, stress intensity factors."""

@@ -1,0 +1,1 @@
+"""Measurements judged: norms, orders, bounds, work against precision."""

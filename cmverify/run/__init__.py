@@ -1,0 +1,1 @@
+"""Cases measured, each by itself, and what is kept of it."""

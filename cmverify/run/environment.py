@@ -1,0 +1,101 @@
+"""What a figure depends on besides the code: versions, machine, threads."""
+
+from __future__ import annotations
+
+import os
+import platform
+import subprocess
+from dataclasses import asdict, dataclass
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from cmverify.run.threads import available_cores
+
+LIBRARIES = (
+    "cmverify", "numpy", "scipy", "numba", "llvmlite", "scikit-fem", "gmsh", "shapely", "meshio",
+    "matplotlib",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Environment:
+    """Versions and machine of a run."""
+
+    python: str
+    system: str
+    processor: str
+    cores: int
+    memory_gb: float
+    versions: dict[str, str]
+    commit: str
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return asdict(self)
+
+
+def describe() -> Environment:
+    """The environment of this process."""
+    import psutil
+
+    return Environment(
+        python=f"{platform.python_implementation()} {platform.python_version()}",
+        system=f"{platform.system()} {platform.release()} {platform.machine()}",
+        processor=_processor(),
+        cores=available_cores(),
+        memory_gb=round(psutil.virtual_memory().total / 2**30, 1),
+        versions={name: _version(name) for name in LIBRARIES},
+        commit=_commit(),
+    )
+
+
+def numba_cache() -> tuple[Path, bool]:
+    """Where Numba keeps the solver's compiled kernels, and whether it can write there."""
+    from importlib.util import find_spec
+
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    if chosen:
+        folder = Path(chosen)
+    else:
+        spec = find_spec("solver")
+        package = Path(spec.origin).parent / "operators" if spec and spec.origin else Path.cwd()
+        folder = package / "__pycache__"
+        if not _writable(folder):  # Numba then falls back to the user's cache
+            folder = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "numba"
+    return folder, _writable(folder)
+
+
+def _writable(folder: Path) -> bool:
+    while not folder.exists() and folder != folder.parent:
+        folder = folder.parent
+    return os.access(folder, os.W_OK)
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "not installed"
+
+
+def _processor() -> str:
+    try:
+        for line in Path("/proc/cpuinfo").read_text().splitlines():
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    except OSError:
+        pass
+    return platform.processor() or platform.machine()
+
+
+def _commit() -> str:
+    """Short hash of the checkout this package runs from, "+" if it has changes; or ""."""
+    here = Path(__file__).resolve().parents[2]
+    if not (here / ".git").exists():
+        return ""
+    try:
+        command = ["git", "-C", str(here), "describe", "--always", "--dirty=+"]
+        return subprocess.run(command, capture_output=True, text=True, timeout=10).stdout.strip()
+    except (OSError, subprocess.TimeoutExpired):
+        return ""

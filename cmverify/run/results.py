@@ -1,0 +1,217 @@
+"""Finished measurements on disk: one JSON and one .npz for each (case, method, resolution).
+
+Files are written beside their final place and renamed, the .npz first: a record whose .json
+exists is complete, whatever killed the run.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+import tempfile
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from dataclasses import fields as fields_of
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cmverify.case import Curve, Field, FieldSet, LinePlot, Measurement
+from cmverify.judge.verdict import Failed, Outcome
+
+FORMAT = 1
+CURVE = ("abscissa", "computed", "reference", "reference_abscissa")
+
+
+@dataclass(frozen=True)
+class Record:
+    """An outcome with what one must know to trust or repeat it.
+
+    Attributes
+    ----------
+    threads : worker's thread limit
+    wall_seconds : whole time of the task, compilation and post-processing included
+    fingerprint : `source_fingerprint` of the code that measured
+    """
+
+    case: str
+    method: str
+    resolution: int
+    outcome: Outcome
+    threads: int
+    wall_seconds: float
+    fingerprint: str
+
+    @property
+    def failed(self) -> bool:
+        """Whether the method raised instead of measuring."""
+        return isinstance(self.outcome, Failed)
+
+
+def source_fingerprint() -> str:
+    """Hash of every Python source of the three packages and of the numerical libraries' versions.
+
+    A result measured by other code must not be taken for a result of this code: `--resume` reuses
+    a record only if the fingerprints agree.
+    """
+    from importlib.metadata import version
+    from importlib.util import find_spec
+
+    digest = hashlib.sha256()
+    for package in ("solver", "references", "cmverify"):
+        spec = find_spec(package)
+        for place in (spec.submodule_search_locations or []) if spec else []:
+            for path in sorted(Path(place).rglob("*.py")):
+                digest.update(path.relative_to(place).as_posix().encode())
+                digest.update(path.read_bytes())
+    for library in ("numpy", "scipy", "numba", "scikit-fem", "gmsh"):
+        digest.update(f"{library}={version(library)}".encode())
+    return digest.hexdigest()[:16]
+
+
+def stem(folder: Path, case: str, method: str, resolution: int) -> Path:
+    """Path of a record without its suffix."""
+    return folder / "results" / case / method.replace("/", "-") / f"{resolution:04d}"
+
+
+def save(record: Record, folder: Path) -> Path:
+    """Write a record atomically; returns the path of its .json."""
+    base = stem(folder, record.case, record.method, record.resolution)
+    base.parent.mkdir(parents=True, exist_ok=True)
+    arrays: dict[str, Any] = {}
+    head = {f: getattr(record, f) for f in ("case", "method", "resolution", "threads")}
+    data: dict[str, Any] = {
+        "format": FORMAT,
+        **head,
+        "wall_seconds": record.wall_seconds,
+        "fingerprint": record.fingerprint,
+    }
+    if isinstance(record.outcome, Failed):
+        data["failed"] = asdict(record.outcome)
+    else:
+        data["measurement"] = _describe(record.outcome, arrays)
+    if arrays:
+        _replace(base.with_suffix(".npz"), lambda stream: np.savez_compressed(stream, **arrays))
+    text = json.dumps(_plain(data), indent=1, allow_nan=False)
+    _replace(base.with_suffix(".json"), lambda stream: stream.write(text.encode()))
+    return base.with_suffix(".json")
+
+
+def load(path: Path) -> Record:
+    """Read a record back from its .json.
+
+    Raises
+    ------
+    ValueError
+        If the file is not a record of this format.
+    """
+    try:
+        data = json.loads(path.read_text())
+        if data["format"] != FORMAT:
+            raise ValueError(f"format {data['format']}, not {FORMAT}")
+        outcome: Outcome
+        if "failed" in data:
+            outcome = Failed(**data["failed"])
+        else:
+            outcome = _restore(data["measurement"], path.with_suffix(".npz"))
+        keys = ("case", "method", "resolution", "threads", "wall_seconds", "fingerprint")
+        return Record(outcome=outcome, **{key: data[key] for key in keys})
+    except (KeyError, TypeError, OSError, json.JSONDecodeError, ValueError) as error:
+        raise ValueError(f"{path} is not a usable result record: {error}") from error
+
+
+def load_all(folder: Path) -> Iterator[Record]:
+    """Every record below a run's folder, in a fixed order."""
+    for path in sorted((folder / "results").rglob("*.json")):
+        yield load(path)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file atomically, folders included."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    _replace(path, lambda stream: stream.write(text.encode()))
+
+
+def _replace(path: Path, write: Any) -> None:
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            write(stream)
+        os.chmod(name, 0o644)
+        os.replace(name, path)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+def _plain(value: Any) -> Any:
+    """JSON data with NaN and infinities as strings, so that no reader chokes on them."""
+    if isinstance(value, dict):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value
+
+
+def _describe(m: Measurement, arrays: dict[str, np.ndarray]) -> dict[str, Any]:
+    """Split a measurement into JSON data (returned) and arrays (filled in)."""
+    data: dict[str, Any] = {
+        "unknowns": m.unknowns,
+        "quantities": dict(m.quantities),
+        "seconds": dict(m.seconds),
+        "statistics": dict(m.statistics),
+    }
+    if m.fields is not None:
+        arrays["points"] = m.fields.points
+        if m.fields.triangles is not None:
+            arrays["triangles"] = m.fields.triangles
+        data["fields"] = {"spacing": m.fields.spacing, "items": {}}
+        for key, item in m.fields.items.items():
+            data["fields"]["items"][key] = {"label": item.label, "unit": item.unit}
+            arrays[f"{key}"], arrays[f"{key}_reference"] = item.computed, item.reference
+    data["lines"] = []
+    for i, line in enumerate(m.lines):
+        entry = {f.name: getattr(line, f.name) for f in fields_of(line) if f.name != "curves"}
+        data["lines"].append({**entry, "curves": [curve.label for curve in line.curves]})
+        for j, curve in enumerate(line.curves):
+            for name in CURVE:
+                if getattr(curve, name) is not None:
+                    arrays[f"line{i}_{j}_{name}"] = getattr(curve, name)
+    return data
+
+
+def _restore(data: dict[str, Any], archive: Path) -> Measurement:
+    arrays: dict[str, Any] = {}
+    if "fields" in data or data["lines"]:
+        with np.load(archive) as content:
+            arrays = {key: content[key] for key in content.files}
+    fields = None
+    if "fields" in data:
+        items = {
+            key: Field(item["label"], item["unit"], arrays[key], arrays[f"{key}_reference"])
+            for key, item in data["fields"]["items"].items()
+        }
+        spacing, triangles = data["fields"]["spacing"], arrays.get("triangles")
+        fields = FieldSet(arrays["points"], items, spacing, triangles)
+    lines = []
+    for i, entry in enumerate(data["lines"]):
+        curves = []
+        for j, label in enumerate(entry["curves"]):
+            given: dict[str, Any] = {name: arrays.get(f"line{i}_{j}_{name}") for name in CURVE}
+            curves.append(Curve(label, **given))
+        lines.append(LinePlot(**{**entry, "curves": tuple(curves)}))
+    return Measurement(
+        unknowns=data["unknowns"],
+        quantities={k: float(v) for k, v in data["quantities"].items()},
+        seconds={k: float(v) for k, v in data["seconds"].items()},
+        statistics=data["statistics"],
+        fields=fields,
+        lines=tuple(lines),
+    )

@@ -1,0 +1,225 @@
+"""Run cases in parallel worker processes, with live progress, losing nothing when killed.
+
+Workers are started afresh (not forked), because the thread limits of Numba and BLAS are read at
+import. Each worker takes one task after another over a pipe and writes every record to disk
+before it answers. A worker that dies (a crash in a compiled library, the kernel's out-of-memory
+killer) costs its task a FAIL and is replaced.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from pathlib import Path
+
+from cmverify.case import Case, Level
+from cmverify.judge.verdict import Failed
+from cmverify.run import results
+from cmverify.run.threads import thread_environment, threads_per_worker
+from cmverify.run.worker import serve
+
+Task = tuple[str, str, int]
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something happened to a task: "started", "finished", "failed" or "reused"."""
+
+    kind: str
+    task: Task
+    seconds: float = 0.0
+    message: str | None = None
+
+
+@dataclass
+class _Worker:
+    process: multiprocessing.process.BaseProcess
+    pipe: Connection
+    task: Task | None = None
+    since: float = 0.0
+
+
+def run(
+    cases: Iterable[Case],
+    level: Level,
+    folder: Path,
+    *,
+    jobs: int = 1,
+    resume: bool = False,
+    timeout: float = 3600.0,
+    listen: Callable[[Event], None] = lambda event: None,
+    registry: str = "cmverify.cases.registry",
+) -> list[results.Record]:
+    """Run every (method, resolution) of a level and return the records, case by case.
+
+    Parameters
+    ----------
+    folder : Path
+        Where records are written, one at a time, as they finish.
+    jobs : int
+        Worker processes; the cores are divided among them.
+    resume : bool
+        Reuse records in `folder` that the same code measured with the same number of threads.
+    timeout : float
+        Seconds after which a single measurement is given up and fails.
+    listen : callable
+        Told of every `Event`, in this process.
+    registry : str
+        Module in which workers look cases up by name.
+    """
+    threads = threads_per_worker(jobs)
+    chosen = list(cases)
+    tasks = [(c.name, m.name, n) for c in chosen for m, n in c.plan(level)]
+    todo: deque[Task] = deque()
+    current = results.source_fingerprint()
+    for task in tasks:
+        if resume and _reusable(folder, task, threads, current):
+            listen(Event("reused", task))
+        else:
+            results.stem(folder, *task).with_suffix(".json").unlink(missing_ok=True)
+            todo.append(task)
+    # The longest tasks first, so that none of them is left running alone at the end.
+    todo = deque(sorted(todo, key=lambda task: -task[2]))
+    _drain(todo, folder, min(jobs, max(len(todo), 1)), threads, timeout, listen, registry)
+    return [results.load(results.stem(folder, *task).with_suffix(".json")) for task in tasks]
+
+
+def _reusable(folder: Path, task: Task, threads: int, fingerprint: str) -> bool:
+    path = results.stem(folder, *task).with_suffix(".json")
+    if not path.exists():
+        return False
+    try:
+        record = results.load(path)
+    except ValueError:
+        return False
+    same_code = record.fingerprint == fingerprint
+    return same_code and record.threads == threads and not record.failed
+
+
+def _drain(
+    todo: deque[Task],
+    folder: Path,
+    jobs: int,
+    threads: int,
+    timeout: float,
+    listen: Callable[[Event], None],
+    registry: str,
+) -> None:
+    workers: list[_Worker] = []
+    try:
+        while todo or any(worker.task for worker in workers):
+            while todo and len(workers) < jobs:
+                workers.append(_start(folder, threads, registry))
+            for worker in workers:
+                if worker.task is None and todo:
+                    _assign(worker, todo.popleft(), listen)
+            busy = [worker for worker in workers if worker.task]
+            patience = min(worker.since for worker in busy) + timeout - time.perf_counter()
+            ready = wait([worker.pipe for worker in busy], max(patience, 0.0))
+            for worker in busy:
+                late = time.perf_counter() - worker.since > timeout
+                if worker.pipe in ready:
+                    alive = _collect(worker, folder, threads, listen)
+                else:
+                    alive = not late
+                    if late:
+                        _give_up(worker, folder, threads, timeout, listen)
+                if not alive:
+                    workers.remove(worker)
+    finally:
+        for worker in workers:
+            _stop(worker)
+
+
+def _start(folder: Path, threads: int, registry: str) -> _Worker:
+    context = multiprocessing.get_context("spawn")
+    here, there = context.Pipe()
+    with _environment(thread_environment(threads)):
+        process = context.Process(target=serve, args=(there, registry, folder, threads))
+        process.daemon = True
+        process.start()
+    there.close()
+    return _Worker(process, here)
+
+
+def _assign(worker: _Worker, task: Task, listen: Callable[[Event], None]) -> None:
+    worker.task, worker.since = task, time.perf_counter()
+    with suppress(BrokenPipeError):  # it died before its task: `_collect` will find out
+        worker.pipe.send(task)
+    listen(Event("started", task))
+
+
+def _collect(worker: _Worker, folder: Path, threads: int, listen: Callable[[Event], None]) -> bool:
+    """Take a worker's answer; False if it died instead of answering."""
+    task = worker.task
+    assert task is not None
+    worker.task = None
+    try:
+        _, seconds, failure = worker.pipe.recv()
+    except (EOFError, ConnectionResetError):
+        worker.process.join(timeout=10)
+        seconds = time.perf_counter() - worker.since
+        failure = f"the worker process died with exit code {worker.process.exitcode}"
+        _fail(task, Failed("WorkerDied", failure), folder, threads, seconds, listen)
+        return False
+    listen(Event("failed" if failure else "finished", task, seconds, failure))
+    return True
+
+
+def _give_up(
+    worker: _Worker, folder: Path, threads: int, timeout: float, listen: Callable[[Event], None]
+) -> None:
+    """End a worker whose task takes too long."""
+    task = worker.task
+    assert task is not None
+    worker.process.kill()
+    worker.process.join(timeout=10)
+    worker.pipe.close()
+    failure = f"no result after {timeout:g} s"
+    _fail(task, Failed("TimeoutError", failure), folder, threads, timeout, listen)
+
+
+def _fail(
+    task: Task,
+    outcome: Failed,
+    folder: Path,
+    threads: int,
+    seconds: float,
+    listen: Callable[[Event], None],
+) -> None:
+    """Record a failure on behalf of a worker that cannot."""
+    fingerprint = results.source_fingerprint()
+    results.save(results.Record(*task, outcome, threads, seconds, fingerprint), folder)
+    listen(Event("failed", task, seconds, outcome.message))
+
+
+def _stop(worker: _Worker) -> None:
+    try:
+        worker.pipe.send(None)
+        worker.process.join(timeout=0.2 if worker.task else 5)
+    except (BrokenPipeError, OSError):
+        pass
+    if worker.process.is_alive():
+        worker.process.terminate()
+    worker.pipe.close()
+
+
+@contextmanager
+def _environment(variables: dict[str, str]) -> Iterator[None]:
+    """Environment variables for the child that is started inside the block."""
+    before = {name: os.environ.get(name) for name in variables}
+    os.environ.update(variables)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value

@@ -1,0 +1,70 @@
+"""One measurement: warm up, run, record. The same function serves workers, pytest and asv."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from pathlib import Path
+from weakref import WeakSet
+
+from cmverify.case import Case, Measurement, Method
+from cmverify.judge.verdict import Failed, Outcome
+from cmverify.run import results
+
+_warm: WeakSet[Callable[[], None]] = WeakSet()
+
+
+def warm_up(method: Method) -> None:
+    """Let a method compile what it needs, once a process."""
+    if method.warm_up not in _warm:
+        method.warm_up()
+        _warm.add(method.warm_up)
+
+
+def measure(method: Method, resolution: int) -> Measurement:
+    """Run a method with its compiled code warm; raises what the method raises."""
+    warm_up(method)
+    measurement = method.run(resolution)
+    if not isinstance(measurement, Measurement):
+        raise TypeError(f"{method.name} returned {type(measurement).__name__}, not a Measurement")
+    return measurement
+
+
+def attempt(method: Method, resolution: int) -> Outcome:
+    """Like `measure`, but an exception becomes a `Failed` outcome."""
+    try:
+        return measure(method, resolution)
+    except Exception as error:
+        text = str(error) or "(no message)"
+        return Failed(type(error).__name__, text, traceback.format_exc(limit=-6))
+
+
+def record(
+    case: Case, method: Method, resolution: int, threads: int, fingerprint: str
+) -> results.Record:
+    """Measure and wrap with what the record keeps; see `results.Record`."""
+    start = time.perf_counter()
+    outcome = attempt(method, resolution)
+    wall = time.perf_counter() - start
+    return results.Record(case.name, method.name, resolution, outcome, threads, wall, fingerprint)
+
+
+def serve(connection: Connection, registry: str, folder: Path, threads: int) -> None:
+    """Body of a worker process: take (case, method, n), save the record, answer, repeat.
+
+    `registry` is the dotted name of a module with `get(name) -> Case`; cases hold functions and
+    are looked up here instead of being sent.
+    """
+    from importlib import import_module
+
+    fingerprint = results.source_fingerprint()
+    lookup = import_module(registry).get
+    while (task := connection.recv()) is not None:
+        name, method_name, resolution = task
+        case = lookup(name)
+        done = record(case, case.method(method_name), resolution, threads, fingerprint)
+        results.save(done, folder)
+        summary = done.outcome.message if isinstance(done.outcome, Failed) else None
+        connection.send((task, done.wall_seconds, summary))

@@ -1,0 +1,1 @@
+"""Studies beside the cases: which solids are stable, and what speed costs."""

@@ -1,0 +1,356 @@
+"""Speed of the bond solver beside what one would otherwise use, as ratios taken in one run.
+
+Everything is measured on the crack-tip problem (Sect. 2.3.1): the product with the stiffness
+against SciPy's sparse formats, the whole static solve against assembled alternatives, and the
+solve's growth with the number of particles. Times of solvers are CPU seconds (all threads), so
+that a threaded code gains nothing by being threaded.
+"""
+
+from __future__ import annotations
+
+import resource
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from statistics import median
+from time import perf_counter, process_time
+from typing import Any, get_args
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse.linalg import LinearOperator, cg
+from threadpoolctl import threadpool_limits
+
+from cmverify.cases.crack_tip import STIFFNESS
+from cmverify.studies.speed.scenes import crack_tip, kernel_scenes, static_scenes
+from references.analytic import lekhnitskii
+from solver import Discretisation
+from solver.analyses.statics import solve
+from solver.bonds.volume_method import Surface
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of a comparison: what, and its measured values."""
+
+    name: str
+    values: dict[str, Any]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON."""
+        return asdict(self)
+
+
+def _timed(products: dict[str, Callable[[], Any]], rounds: int = 25) -> dict[str, float]:
+    """Median seconds of a call of each, taken in turns: a drifting machine drifts for all."""
+    for product in products.values():
+        product()
+    times: dict[str, list[float]] = {name: [] for name in products}
+    for _ in range(rounds):
+        for name, product in products.items():
+            # The first call finds its data in memory, the others in the caches they leave.
+            product()
+            begun = perf_counter()
+            for _ in range(3):
+                product()
+            times[name].append((perf_counter() - begun) / 3)
+    return {name: median(samples) for name, samples in times.items()}
+
+
+def _with_threads(count: int, product: Callable[[], Any]) -> Any:
+    """Call `product` on that many threads."""
+    numba.set_num_threads(count)
+    return product()
+
+
+def _sparse_formats(matrix: sparse.csr_array, components: int) -> dict[str, tuple[Any, int]]:
+    """Product callables' matrices and their bytes: CSR, symmetric CSR, blocked."""
+
+    def size(*matrices: Any) -> int:
+        return sum(m.data.nbytes + m.indices.nbytes + m.indptr.nbytes for m in matrices)
+
+    count = matrix.shape[0] // components
+    order = np.arange(matrix.shape[0]).reshape(components, count).T.ravel()
+    blocked = matrix[order][:, order].tobsr((components, components))
+    upper = sparse.triu(matrix, format="csr")
+    strict = sparse.triu(matrix, 1, format="csr").T  # a CSC view of the same numbers
+    return {
+        "SciPy CSR": (matrix.__matmul__, size(matrix)),
+        "SciPy CSR, upper half": (lambda x: upper @ x + strict @ x, size(upper)),
+        f"SciPy BSR {components}×{components}": (blocked.__matmul__, size(blocked)),
+    }
+
+
+def kernel(resolution: int = 120) -> list[Row]:
+    """Products on one thread (and on all), against SciPy's formats of the same matrix.
+
+    Returns
+    -------
+    list of Row
+        Values: ``ms`` a product, ``bonds_per_s`` (directed), ``bytes`` that a product reads
+        besides the fields, ``bytes_per_s``, ``slower`` (time over the matrix-free product's,
+        one thread each), ``memory`` (bytes over the matrix-free operator's), ``error`` (largest
+        difference of the products, relative).
+    """
+    rows = []
+    threads = numba.get_num_threads()
+    for kind, scene in kernel_scenes(resolution).items():
+        operator = scene.discretise().operator
+        x = np.random.default_rng(1).normal(size=operator.shape[0])
+        exact, c = operator.matvec(x), operator.components
+        formats = _sparse_formats(operator.to_csr(), c)
+        interleaved = x.reshape(c, -1).T.ravel()
+        given = {name: interleaved if "BSR" in name else x for name in formats}
+        own = partial(operator.matvec, x)
+        several = f"matrix-free, {threads} threads"
+        one = partial(_with_threads, 1, own)
+        try:
+            # Apart from the formats, which stream through the caches: their turns would be
+            # measured, not the threads.
+            pair = _timed({"matrix-free": one, several: partial(_with_threads, threads, own)})
+            numba.set_num_threads(1)
+            rest = {name: partial(f[0], given[name]) for name, f in formats.items()}
+            seconds = _timed({"matrix-free": own, **rest})
+        finally:
+            numba.set_num_threads(threads)
+        taken_and_base = {name: (t, pair["matrix-free"]) for name, t in pair.items()}
+        taken_and_base |= {name: (seconds[name], seconds["matrix-free"]) for name in formats}
+        sizes = {name: size for name, (_, size) in formats.items()}
+        for name, (taken, base) in taken_and_base.items():
+            size, error = sizes.get(name, operator.nbytes), 0.0
+            if name in formats:
+                y = formats[name][0](given[name])
+                y = y.reshape(-1, c).T.ravel() if "BSR" in name else y
+                error = float(np.abs(y - exact).max() / np.abs(exact).max())
+            values = {
+                "ms": 1e3 * taken,
+                "bonds_per_s": operator.directed_bonds / taken,
+                "bytes": size,
+                "bytes_per_s": (size + 16 * x.size) / taken,
+                "slower": taken / base,
+                "memory": size / operator.nbytes,
+                "error": error,
+                "threads": threads if name == several else 1,
+            }
+            rows.append(Row(f"{kind}: {name}", values))
+    return rows
+
+
+def scenes(resolution: int = 60, tolerance: float = 1e-8) -> list[Row]:
+    """Iterations of the two-level method on bodies with holes, notches and curved cracks.
+
+    Returns
+    -------
+    list of Row
+        Values: ``particles``, ``method``, ``iterations``, ``residual``, ``setup_s``, ``solve_s``.
+    """
+    rows = []
+    for name, scene in static_scenes(resolution).items():
+        found = scene.solve(tolerance, preconditioning="two-level").statistics
+        rows.append(
+            Row(
+                name,
+                {
+                    "particles": found.particles,
+                    "method": found.method,
+                    "iterations": found.iterations,
+                    "residual": found.residual,
+                    "setup_s": found.setup_seconds,
+                    "solve_s": found.solve_seconds,
+                },
+            )
+        )
+    return rows
+
+
+def surfaces(resolution: int = 60, tolerance: float = 1e-8) -> list[Row]:
+    """What the treatment of surfaces costs, beside none, on bodies with and without free surfaces.
+
+    Returns
+    -------
+    list of Row
+        Values: ``iterations``, ``setup_s`` (preconditioner included), ``product_ms``, ``bytes``
+        that a product reads, and their ratios to those of the same scene without treatment.
+    """
+    every = static_scenes(resolution)
+    chosen = [
+        "crack tip",
+        "plate, clamped and pulled",
+        "plate with a hole",
+        "notched plate with a hole",
+        "edge crack",
+        "curved crack",
+        "heat, isotropic",
+    ]
+    rows = []
+    for name in chosen:
+        bare: dict[str, Any] = {}
+        for treatment in get_args(Surface):
+            scene = replace(every[name], surface=treatment)
+            found = scene.solve(tolerance, preconditioning="two-level")
+            operator = found.discretisation.operator
+            x = np.cos(1.7 * np.arange(operator.shape[0]))
+            product = _timed({"product": partial(operator.matvec, x)}, rounds=7)["product"]
+            values = {
+                "iterations": found.statistics.iterations,
+                "setup_s": found.statistics.setup_seconds,
+                "product_ms": 1e3 * product,
+                "bytes": operator.nbytes,
+            }
+            bare = bare or values
+            ratios = {f"{key} ÷ none": value / bare[key] for key, value in values.items()}
+            rows.append(Row(f"{name}: {treatment}", values | ratios))
+    return rows
+
+
+def _row(name: str, cpu: float, wall: float, base: float, **more: Any) -> Row:
+    return Row(name, {"cpu_s": cpu, "wall_s": wall, "slower": cpu / base, **more})
+
+
+def solvers(resolution: int = 120, tolerance: float = 1e-8, repeats: int = 3) -> list[Row]:
+    """The whole static solve against assembled alternatives, to the same residual.
+
+    Set-up and assembly are included, compilation is not. PARDISO (`pypardiso`, extra ``bench``)
+    appears where it is installed.
+
+    Returns
+    -------
+    list of Row
+        Values: ``cpu_s`` (all threads), ``wall_s``, ``slower`` (CPU seconds over the bond
+        solver's), ``iterations``, ``residual``.
+    """
+    scene = crack_tip(resolution)
+    scene.solve(tolerance)
+    threads = numba.get_num_threads()
+    rows: list[Row] = []
+    base = 0.0
+    try:
+        # One thread first: CPU seconds then hold no waiting for other threads.
+        for count in dict.fromkeys((1, threads)):
+            numba.set_num_threads(count)
+            runs = []
+            for _ in range(repeats):
+                cpu, wall = process_time(), perf_counter()
+                statistics = scene.solve(tolerance).statistics
+                runs.append((process_time() - cpu, perf_counter() - wall))
+            cpu, wall = median(r[0] for r in runs), median(r[1] for r in runs)
+            base = base or cpu
+            name = f"bond solver, two-level CG, {count} thread{'s' * (count > 1)}"
+            counts = {"iterations": statistics.iterations, "residual": statistics.residual}
+            rows.append(_row(name, cpu, wall, base, **counts))
+    finally:
+        numba.set_num_threads(threads)
+    problem = scene.discretise()
+    with threadpool_limits(limits=1, user_api="blas"):
+        rows.append(_scipy_cg(problem, tolerance, base))
+        pardiso = _pardiso(problem, base)
+    return rows + ([pardiso] if pardiso else [])
+
+
+def _scipy_cg(problem: Discretisation, tolerance: float, base: float) -> Row:
+    """SciPy CG with block Jacobi on the CSR matrix, assembly included."""
+    operator = problem.operator
+    rhs = problem.right_hand_side()
+    cpu, wall = process_time(), perf_counter()
+    matrix = operator.to_csr()
+    assembled = process_time() - cpu
+    inverse = np.linalg.inv(operator.block_diagonal)
+    c = operator.components
+    jacobi = LinearOperator(
+        operator.shape,
+        matvec=lambda r: np.einsum("pij,jp->ip", inverse, r.reshape(c, -1)).ravel(),
+        dtype=np.float64,
+    )
+    count = [0]
+    x, _ = cg(
+        matrix,
+        rhs,
+        rtol=tolerance,
+        maxiter=5000,
+        M=jacobi,
+        callback=lambda _: count.__setitem__(0, count[0] + 1),
+    )
+    cpu, wall = process_time() - cpu, perf_counter() - wall
+    return _row(
+        "SciPy CG, block Jacobi, CSR",
+        cpu,
+        wall,
+        base,
+        iterations=count[0],
+        residual=_residual(problem, x, rhs),
+        assembly_s=assembled,
+    )
+
+
+def _pardiso(problem: Discretisation, base: float) -> Row | None:
+    """MKL PARDISO through pypardiso, assembly included; None where it is not installed."""
+    try:
+        import pypardiso
+    except ImportError:
+        return None
+    rhs = problem.right_hand_side()
+    cpu, wall = process_time(), perf_counter()
+    matrix = problem.operator.to_csr()
+    assembled = process_time() - cpu
+    x = pypardiso.spsolve(sparse.csr_matrix(matrix), rhs)
+    cpu, wall = process_time() - cpu, perf_counter() - wall
+    pypardiso.ps.free_memory(everything=True)
+    return _row(
+        "MKL PARDISO",
+        cpu,
+        wall,
+        base,
+        iterations=0,
+        residual=_residual(problem, x, rhs),
+        assembly_s=assembled,
+    )
+
+
+def _residual(problem: Discretisation, x: Array, rhs: Array) -> float:
+    defect = rhs - problem.operator.matvec(x)
+    return float(np.linalg.norm(defect) / np.linalg.norm(rhs))
+
+
+def growth(resolutions: tuple[int, ...], tolerance: float = 1e-8) -> list[Row]:
+    """Set-up and solve as the lattice is refined, smallest first (peak memory only grows).
+
+    Returns
+    -------
+    list of Row
+        Values: ``particles``, ``unknowns``, ``iterations``, ``setup_s``, ``solve_s``,
+        ``us_per_particle``, ``peak_gb`` (of the process so far), ``error`` (relative L2 against
+        the closed form).
+    """
+    rows = []
+    crack_tip(resolutions[0]).solve(tolerance)
+    for resolution in resolutions:
+        scene = crack_tip(resolution)
+        begun = perf_counter()
+        solution = solve(scene.discretise(), tolerance, preconditioning="two-level")
+        wall = perf_counter() - begun
+        free = ~solution.prescribed
+        x, y = solution.points[free].T
+        exact = lekhnitskii.crack_tip_displacement(STIFFNESS, x, y, 1.0, 0.0)
+        error = np.linalg.norm(solution.displacement[free] - exact) / np.linalg.norm(exact)
+        statistics = solution.statistics
+        rows.append(
+            Row(
+                f"a/{resolution}",
+                {
+                    "particles": statistics.particles,
+                    "unknowns": statistics.unknowns,
+                    "iterations": statistics.iterations,
+                    "residual": statistics.residual,
+                    "setup_s": statistics.setup_seconds,
+                    "solve_s": statistics.solve_seconds,
+                    "us_per_particle": 1e6 * wall / statistics.particles,
+                    "peak_gb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20,
+                    "error": float(error),
+                },
+            )
+        )
+    return rows

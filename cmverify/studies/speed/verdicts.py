@@ -1,0 +1,82 @@
+"""What the measured speeds must hold, as ratios and counts; never absolute times."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cmverify.studies.speed.measure import Row
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One requirement with its measured value."""
+
+    what: str
+    measured: float
+    asked: str
+    passed: bool
+
+
+def _at_least(what: str, measured: float, bound: float) -> Verdict:
+    return Verdict(what, measured, f"≥ {bound:g}", bool(measured >= bound))
+
+
+def _at_most(what: str, measured: float, bound: float) -> Verdict:
+    return Verdict(what, measured, f"≤ {bound:g}", bool(measured <= bound))
+
+
+def of_kernel(rows: list[Row]) -> list[Verdict]:
+    """Five times SciPy's CSR product at a twentieth of its memory, 1.6 from two threads."""
+    found = []
+    for row in rows:
+        if row.name.endswith("SciPy CSR"):
+            kind = row.name.split(":")[0]
+            found.append(_at_least(f"{kind}: CSR product time ÷ ours", row.values["slower"], 5.0))
+            found.append(_at_least(f"{kind}: CSR memory ÷ ours", row.values["memory"], 20.0))
+            found.append(_at_most(f"{kind}: difference from CSR", row.values["error"], 1e-13))
+        elif row.values["threads"] == 2:
+            kind = row.name.split(":")[0]
+            gain = 1.0 / row.values["slower"]
+            found.append(_at_least(f"{kind}: gain of two threads", gain, 1.6))
+    return found
+
+
+def of_solvers(rows: list[Row]) -> list[Verdict]:
+    """1/25 of the CPU seconds of SciPy CG in CSR, 1/30 of MKL PARDISO."""
+    bounds = {"SciPy CG, block Jacobi, CSR": 25.0, "MKL PARDISO": 30.0}
+    return [
+        _at_least(f"{row.name}: CPU seconds ÷ ours", row.values["slower"], bounds[row.name])
+        for row in rows
+        if row.name in bounds
+    ]
+
+
+def of_growth(rows: list[Row]) -> list[Verdict]:
+    """Twelve iterations at every spacing; a million particles in 4 GB at 1.5 times the cost."""
+    found = [_at_most(f"{row.name}: iterations", row.values["iterations"], 12) for row in rows]
+    by_name = {row.name: row.values for row in rows}
+    if "a/560" in by_name:
+        largest, base = by_name["a/560"], by_name["a/120"]
+        cost = largest["us_per_particle"] / base["us_per_particle"]
+        found.append(_at_most("a/560: time per particle ÷ a/120's", cost, 1.5))
+        found.append(_at_most("a/560: peak memory, GB", largest["peak_gb"], 4.0))
+    return found
+
+
+def of_scenes(rows: list[Row]) -> list[Verdict]:
+    """Iterations on other static scenes: twenty is the goal."""
+    return [_at_most(f"{row.name}: iterations", row.values["iterations"], 20) for row in rows]
+
+
+def of_surfaces(rows: list[Row]) -> list[Verdict]:
+    """At most 1.5 times the iterations; nothing at all where every edge is prescribed."""
+    found = []
+    for row in rows:
+        if not row.name.endswith(": extrapolated"):
+            continue
+        more = row.values["iterations ÷ none"]
+        found.append(_at_most(f"{row.name}: iterations ÷ those without", more, 1.5))
+        if row.name.startswith("heat"):
+            bytes_more = row.values["bytes ÷ none"]
+            found.append(_at_most(f"{row.name}: memory ÷ that without", bytes_more, 1.0))
+    return found

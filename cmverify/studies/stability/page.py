@@ -1,0 +1,92 @@
+"""The page of the stability studies: one self-contained HTML file in the report's style."""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cmverify.run.results import write_text
+from cmverify.studies.stability.verdicts import Verdict
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure with its caption and words for those who cannot see it; written as a PNG too."""
+
+    name: str
+    figure: Figure
+    caption: str
+    alt: str
+    wide: bool = True
+
+    @property
+    def png(self) -> bytes:
+        """The picture as a file."""
+        buffer = io.BytesIO()
+        self.figure.savefig(buffer, format="png", dpi=130)
+        return buffer.getvalue()
+
+
+@dataclass(frozen=True)
+class Section:
+    """A study: what it shows and its pictures."""
+
+    title: str
+    text: str
+    pictures: tuple[Picture, ...]
+
+
+def write(
+    verdicts: Sequence[Verdict], sections: Sequence[Section], command: str, folder: Path
+) -> Path:
+    """Write stability.html and the figures beside it; returns the page's path."""
+    from jinja2 import Environment, StrictUndefined
+
+    folder.mkdir(parents=True, exist_ok=True)
+    environment = Environment(autoescape=True, undefined=StrictUndefined)
+    drawn = []
+    for section in sections:
+        pictures = []
+        for picture in section.pictures:
+            data = picture.png
+            (folder / f"{picture.name}.png").write_bytes(data)
+            uri = "data:image/png;base64," + base64.b64encode(data).decode()
+            about = {"caption": picture.caption, "alt": picture.alt, "wide": picture.wide}
+            pictures.append({"uri": uri, **about})
+        drawn.append({"title": section.title, "text": section.text, "pictures": pictures})
+    resources = files("cmverify.report")
+    page = environment.from_string((resources / "stability.html").read_text()).render(
+        css=(resources / "style.css").read_text(),
+        verdicts=verdicts,
+        confirmed=all_confirmed(verdicts),
+        sections=drawn,
+        command=command,
+    )
+    path = folder / "stability.html"
+    write_text(path, page)
+    return path
+
+
+def all_confirmed(verdicts: Sequence[Verdict]) -> bool:
+    """Whether there are verdicts and none is contradicted."""
+    return bool(verdicts) and all(bool(v.confirmed) for v in verdicts if v.confirmed is not None)
+
+
+def spoken(margin: np.ndarray) -> str:
+    """A map in words."""
+    count = margin.size
+    return (
+        f"{100 * (margin > 0).sum() / count:.0f} % of the map stable, "
+        f"{100 * (margin <= 0).sum() / count:.0f} % unstable, "
+        f"{100 * np.isnan(margin).sum() / count:.0f} % without such moduli"
+    )

@@ -1,0 +1,329 @@
+"""What single bonds know beyond their offset: missing, cut by a crack, stiffened at a surface.
+
+A bulk bond is an offset and is stored nowhere. Only particles with at least one bond that
+differs, the *special* ones, own a column of factors: 0 for a bond that is missing or cut, the
+surface factor for the others. A particle that merely lacks neighbours needs no factors either,
+because fields are zero outside the body; it is *truncated* and only its diagonal block differs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from copy import copy
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
+from scipy.spatial import KDTree
+
+from ..errors import SceneError
+from ..geometry.lattice import Lattice
+from ..geometry.outline import Outline, apart
+from ..geometry.regions import Crack
+from ..material.family import Family
+from .ended import EndedBonds
+from .volume_method import Surface, full_volume, volume_factor
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Indices = NDArray[np.int64]
+
+# Share of the spacing within which a point counts as lying on a crack.
+_TIE = 1e-9
+
+
+def crosses(
+    start: Array,
+    end: Array,
+    crack_start: Array,
+    crack_end: Array,
+    tip: tuple[bool, bool],
+    spacing: float,
+) -> Mask:
+    """Whether bonds from `start` to `end` (shapes (..., 2)) cross a straight piece of crack.
+
+    Exact ties: a bond through the very tip stays (where `tip` marks that end of the piece), so
+    that the two diagonals of a tip between four particles are treated alike and mirror symmetry
+    stands; measured, cutting them raises the crack-tip errors by half. A bond through the joint
+    of two pieces is cut. A particle *on* the crack line belongs to its left side.
+    """
+    along = crack_end - crack_start
+    size = float(np.hypot(*along))
+    along = along / size
+    across = np.array([-along[1], along[0]])
+    tie = _TIE * spacing
+    a, b = start - crack_start, end - crack_start
+    height_a, height_b = a @ across, b @ across
+    opposite = (height_a >= -tie) != (height_b >= -tie)
+    gap = height_a - height_b
+    gap = np.where(opposite & (gap != 0.0), gap, 1.0)
+    where = a @ along + (b @ along - a @ along) * height_a / gap
+    low, high = (tie if tip[0] else -tie), (size - tie if tip[1] else size + tie)
+    return opposite & (where >= low) & (where <= high)
+
+
+class Bonds:
+    """Bond factors of a body.
+
+    Parameters
+    ----------
+    lattice : Lattice
+    family : Family
+    cracks : sequence of Crack
+    surface : {"none", "volume", "extrapolated"}
+    prescribed : ndarray of bool, shape (N,)
+        Particles that are wholly prescribed: the body's edge is no surface for them.
+    broken : ndarray of bool, shape (family size / 2, N), optional
+        Bonds, by half offset and particle of origin, that carry nothing. Unlike a crack that was
+        always there they make no surface: the bonds that are left are not stiffened.
+    growing : bool
+        Whether cracks are growing: their faces then share no node at the tips.
+
+    Raises
+    ------
+    SceneError
+        If a crack lies outside the body, or `broken` has the wrong shape.
+    """
+
+    def __init__(
+        self,
+        lattice: Lattice,
+        family: Family,
+        cracks: Sequence[Crack] = (),
+        surface: Surface = "none",
+        prescribed: Mask | None = None,
+        broken: Mask | None = None,
+        growing: bool = False,
+    ) -> None:
+        self.lattice, self.family, self.surface = lattice, family, surface
+        rows, columns = lattice.cells
+        free = np.ones(lattice.count, bool) if prescribed is None else ~prescribed
+        longest = float(np.hypot(*family.offsets.T).max()) * (1 + _TIE)
+        edge_near = distance_transform_edt(lattice.mask)[rows, columns] <= longest
+        near = np.nonzero(edge_near)[0]
+        #: Particles that lack at least one neighbour.
+        self.short: Indices = near[~self.exist(near).all(axis=0)]
+        cut_at, cut = self._cut_bonds(cracks)
+
+        broken_at, broken_there = self._both_ends(broken)
+
+        special = np.zeros(lattice.count, dtype=bool)
+        special[cut_at] = True
+        special[broken_at] = True
+        if surface == "volume":
+            volume = np.full(lattice.count, full_volume(family))
+            physical = self.short[free[self.short]]
+            missing = (family.fraction[:, None] * self._open(physical, free)).sum(axis=0)
+            volume[physical] -= missing
+            volume[cut_at] -= (family.fraction[:, None] * cut).sum(axis=0)
+            deficient = volume < full_volume(family) * (1 - 1e-12)
+            if deficient.any():
+                grid = np.ones(lattice.shape, dtype=bool)
+                grid[rows[deficient], columns[deficient]] = False
+                special |= distance_transform_edt(grid)[rows, columns] <= longest
+        #: Particles that own a column of `factors`, in the lattice's order.
+        self.special: Indices = np.nonzero(special)[0]
+        factors = self.exist(self.special).astype(np.float64)
+        if surface == "volume" and len(self.special):
+            volumes = np.zeros(lattice.shape)
+            volumes[rows, columns] = volume
+            here = volume[self.special]
+            for o, (dx, dy) in enumerate(family.offsets):
+                there = volumes[rows[self.special] + dy, columns[self.special] + dx]
+                factors[o] *= volume_factor(family, here, there)
+        if len(cut_at):
+            factors[:, np.searchsorted(self.special, cut_at)] *= ~cut
+        if len(broken_at):
+            factors[:, np.searchsorted(self.special, broken_at)] *= ~broken_there
+        #: Factor of each bond of a special particle, shape (family size, special).
+        self.factors: Array = factors
+        #: Bonds that end at the surface, if the treatment has any.
+        self.ended: EndedBonds | None = None
+        if surface == "extrapolated":
+            self.ended = self._end(cracks, cut_at, cut, free, broken_at, growing)
+
+    def breaking(self, offsets: Indices, origins: Indices) -> Bonds:
+        """These bonds with some more of them broken; what has not changed is shared.
+
+        Parameters
+        ----------
+        offsets, origins : ndarray of int, shape (n,)
+            Half offset and particle of origin of each bond that breaks. All must exist.
+        """
+        rows, columns = self.lattice.cells
+        half = self.family.size // 2
+        dx, dy = self.family.offsets[offsets].T
+        ends = self.lattice.number()[rows[origins] + dy, columns[origins] + dx]
+        special = np.union1d(self.special, np.union1d(origins, ends))
+        if len(special) == len(self.special):
+            factors = self.factors.copy()
+        else:
+            factors = np.empty((self.family.size, len(special)))
+            known = np.zeros(len(special), dtype=bool)
+            known[np.searchsorted(special, self.special)] = True
+            factors[:, known] = self.factors
+            # A particle becomes special: as yet its bonds are those of the bulk.
+            factors[:, ~known] = self.exist(special[~known])
+        factors[offsets, np.searchsorted(special, origins)] = 0.0
+        factors[offsets + half, np.searchsorted(special, ends)] = 0.0
+        result = copy(self)
+        result.__dict__.pop("column", None)
+        result.special, result.factors = special, factors
+        return result
+
+    def without_ends(self, particles: Indices) -> Bonds:
+        """These bonds less those of some particles that end at the surface."""
+        result = copy(self)
+        if self.ended is not None:
+            result.ended = self.ended.without(particles)
+        return result
+
+    def exist(self, particles: Indices) -> Mask:
+        """Which neighbours the particles have, shape (family size, particles)."""
+        rows, columns = (axis[particles] for axis in self.lattice.cells)
+        dx, dy = self.family.offsets.T
+        return self.lattice.mask[rows + dy[:, None], columns + dx[:, None]]
+
+    def _open(self, particles: Indices, free: Mask) -> Mask:
+        """Which neighbours the particles lack at a physical edge, like `exist`.
+
+        An empty cell that is no nearer to a free particle than to a prescribed one lies beyond a
+        support, thin as its layer may be, and is no surface.
+        """
+        lattice = self.lattice
+        rows, columns = lattice.cells
+        beyond = np.zeros(lattice.shape, dtype=bool)
+        if not free.all():
+            away = []
+            for kind in (free, ~free):
+                others = np.ones(lattice.shape, dtype=bool)
+                others[rows[kind], columns[kind]] = False
+                away.append(distance_transform_edt(others))
+            beyond = ~lattice.mask & (away[1] <= away[0] * (1 + _TIE))
+        dx, dy = self.family.offsets.T
+        there = rows[particles] + dy[:, None], columns[particles] + dx[:, None]
+        return ~lattice.mask[there] & ~beyond[there]
+
+    def _end(
+        self,
+        cracks: Sequence[Crack],
+        cut_at: Indices,
+        cut: Mask,
+        free: Mask,
+        broken_at: Indices,
+        growing: bool,
+    ) -> EndedBonds | None:
+        """The bonds that end at a surface which a particle with a free unknown feels."""
+        lattice, family = self.lattice, self.family
+        particles = np.union1d(self.short, cut_at)
+        # A particle that has lost all its bonds to others holds no surface.
+        rubble = broken_at[self.factors_of(broken_at).sum(axis=0) == 0]
+        particles = np.setdiff1d(particles, rubble, assume_unique=True)
+        kept = np.isin(cut_at, particles)
+        cut_at, cut = cut_at[kept], cut[:, kept]
+        if not free[particles].any():
+            return None
+        lost = ~self.exist(particles)
+        lost[:, np.searchsorted(particles, cut_at)] |= cut
+        apart(cracks)
+        outline = Outline.of(lattice.region, cracks, lattice.spacing, joined=not growing)
+        free = free[particles]
+        ended = EndedBonds.of(lattice, family, outline, particles[free], lost[:, free])
+        if free.all():
+            return ended.with_chords(lattice, family)
+        # Prescribed particles hold the surface where free ones feel it.
+        reach = 2 * float(family.length.max())
+        tree = KDTree(lattice.points[particles[free]])
+        distance, _ = tree.query(lattice.points[particles], distance_upper_bound=reach)
+        near = ~free & np.isfinite(distance)
+        others = EndedBonds.of(lattice, family, outline, particles[near], lost[:, near])
+        return ended.joined(others).with_chords(lattice, family)
+
+    def _both_ends(self, broken: Mask | None) -> tuple[Indices, Mask]:
+        """Particles with broken bonds and which, from the half offsets of one end."""
+        half = self.family.size // 2
+        if broken is None:
+            return np.zeros(0, dtype=np.int64), np.zeros((self.family.size, 0), dtype=bool)
+        if broken.shape != (half, self.lattice.count) or broken.dtype != bool:
+            raise SceneError(
+                f"broken bonds are given as booleans of shape {(half, self.lattice.count)} "
+                f"(half offsets × particles), not {broken.dtype} {broken.shape}"
+            )
+        rows, columns = self.lattice.cells
+        number = self.lattice.number()
+        whole = np.zeros((2 * half, self.lattice.count), dtype=bool)
+        for o, (dx, dy) in enumerate(self.family.offsets[:half]):
+            neighbour = number[rows + dy, columns + dx]
+            start = np.nonzero(broken[o] & (neighbour >= 0))[0]
+            whole[o, start] = True
+            whole[o + half, neighbour[start]] = True
+        particles = np.nonzero(whole.any(axis=0))[0]
+        return particles, whole[:, particles]
+
+    def _cut_bonds(self, cracks: Sequence[Crack]) -> tuple[Indices, Mask]:
+        """Particles with cut bonds and which of their bonds are cut."""
+        lattice, family = self.lattice, self.family
+        reach = float(family.length.max())
+        touched: dict[int, NDArray[np.bool_]] = {}
+        bonds = family.offsets * lattice.spacing
+        for crack in cracks:
+            found = False
+            for k, piece in enumerate(crack.segments):
+                piece_start, piece_end = np.array(piece)
+                near = self._near(piece_start, piece_end, reach)
+                start = lattice.points[near][None, :, :]
+                last = len(crack.segments) - 1
+                tip = (k == 0 and not crack.closed, k == last and not crack.closed)
+                end = start + bonds[:, None, :]
+                cut = crosses(start, end, piece_start, piece_end, tip, lattice.spacing)
+                cut &= self.exist(near)
+                for column in np.nonzero(cut.any(axis=0))[0]:
+                    p, found = int(near[column]), True
+                    mine = cut[:, column]
+                    touched[p] = touched[p] | mine if p in touched else mine
+            if not found:
+                raise SceneError(
+                    f"the crack through {crack.points} cuts no bond: it lies outside the body"
+                )
+        particles = np.array(sorted(touched), dtype=np.int64)
+        if not len(particles):
+            return particles, np.zeros((family.size, 0), dtype=bool)
+        return particles, np.stack([touched[int(p)] for p in particles], axis=1)
+
+    def _near(self, start: Array, end: Array, reach: float) -> Indices:
+        """Particles within `reach` of the line from `start` to `end`, and beside it."""
+        points = self.lattice.points
+        low, high = np.minimum(start, end) - reach, np.maximum(start, end) + reach
+        near = np.nonzero(np.all((points >= low) & (points <= high), axis=1))[0]
+        along = (end - start) / np.linalg.norm(end - start)
+        height = (points[near] - start) @ np.array([-along[1], along[0]])
+        return near[np.abs(height) <= reach]
+
+    @cached_property
+    def column(self) -> NDArray[np.int64]:
+        """Column of `factors` of every particle, −1 for those without one, shape (N,)."""
+        columns = np.full(self.lattice.count, -1, dtype=np.int64)
+        columns[self.special] = np.arange(len(self.special))
+        return columns
+
+    def factor(self, offset: int) -> Array:
+        """Factor of the bond with family index `offset` of every particle, shape (N,)."""
+        rows, columns = self.lattice.cells
+        dx, dy = self.family.offsets[offset]
+        values = self.lattice.mask[rows + dy, columns + dx].astype(np.float64)
+        values[self.special] = self.factors[offset]
+        return values
+
+    def factors_of(self, particles: Indices) -> Array:
+        """Factors of all bonds of some particles, shape (family size, particles)."""
+        factors = self.exist(particles).astype(np.float64)
+        columns = self.column[particles]
+        factors[:, columns >= 0] = self.factors[:, columns[columns >= 0]]
+        return factors
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of everything stored for single bonds."""
+        ended = 0 if self.ended is None else self.ended.nbytes
+        return int(self.factors.nbytes + self.special.nbytes + self.short.nbytes + ended)

@@ -1,0 +1,302 @@
+"""Which bonds are overloaded, and which of them break next (Sect. 3, Eq. 104).
+
+A bond of the pair {p, q} stores the energy density w = ½ |ξ| (k_n s² + k_t γ²) and holds
+w α Λ f Δv_p Δv_q in all, f being its surface factor. It breaks when f w reaches its critical w_c:
+what breaking costs is then w_c α Λ Δv_p Δv_q, whatever the surface treatment, so that a cut
+costs what the toughness was calibrated for.
+
+Bonds are held once, by half offset and particle of origin, the only bond state there is.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import SceneError
+from ..material.calibration import ElasticModuli
+from ..material.family import Family
+from ..problem.conditions import Where, select
+from ..scene import Discretisation
+from . import bond_kernels
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Indices = NDArray[np.int64]
+Criterion = Literal["total", "axial"]
+
+# Utilisations that differ by less than this share are one event: mirror images break together,
+# though the solver's tolerance tells them apart.
+TIE = 1e-4
+
+
+class Critical(Protocol):
+    """Anything that knows the critical energy density of every bond of a family."""
+
+    def energies(self, family: Family) -> Array:
+        """w_c, shape (family size,), J/m⁶."""
+
+
+def critical_energies(toughness: Critical | ArrayLike, family: Family) -> Array:
+    """w_c of the half offsets from a toughness object or one value a family offset.
+
+    Raises
+    ------
+    SceneError
+        If a value is not positive and finite, or opposite bonds differ.
+    """
+    if hasattr(toughness, "energies"):
+        given = np.asarray(toughness.energies(family), dtype=np.float64)
+    else:
+        given = np.asarray(toughness, dtype=np.float64)
+    if given.ndim == 0:
+        given = np.full(family.size, float(given))
+    if given.shape != (family.size,):
+        raise SceneError(
+            f"critical bond energies need one value for each of the {family.size} bonds of a "
+            f"family, got shape {given.shape}"
+        )
+    half = family.size // 2
+    if not np.allclose(given[:half], given[half:], rtol=1e-9, atol=0.0):
+        raise SceneError("a bond and its opposite need the same critical energy")
+    if not (np.all(np.isfinite(given)) and np.all(given > 0)):
+        raise SceneError(
+            f"critical bond energies must be positive and finite, not {given.min():g} … "
+            f"{given.max():g}: a bond without toughness has broken before it is loaded"
+        )
+    return given[:half].copy()
+
+
+class Breakable:
+    """Energies and strengths of all bonds of a body.
+
+    Parameters
+    ----------
+    discretisation : Discretisation
+        Of an elastic scene.
+    toughness : object with ``energies(family)``, or array of shape (family size,)
+        Critical energy densities w_c, J/m⁶.
+    no_fail : sequence of Region or callable
+        Bonds with an end in one of these never break.
+    tension_only : bool
+        Bonds that are shortened (s < 0) do not break.
+    criterion : {"total", "axial"}
+        ``total``: w as stored. ``axial``: its part ½ |ξ| k_n s² only.
+
+    Raises
+    ------
+    SceneError
+        If a modulus is negative for which the criterion has no meaning.
+
+    Notes
+    -----
+    Where k_t < 0 (isotropic ν > 1/3, generally C66 < C12) a bond that is sheared stores
+    *negative* energy: w is no measure of its load, breaking it takes energy out of nothing, and
+    the total criterion is refused. The axial criterion compares the energy of the stretch alone
+    with w_c; the balance of energies still closes, because what a bond held beyond its w_c (here
+    possibly less than nothing) is booked as excess. A negative k_n is refused in any case.
+    """
+
+    def __init__(
+        self,
+        discretisation: Discretisation,
+        toughness: Critical | ArrayLike,
+        no_fail: tuple[Where, ...] = (),
+        tension_only: bool = True,
+        criterion: Criterion = "total",
+    ) -> None:
+        moduli, family = discretisation.moduli, discretisation.family
+        if not isinstance(moduli, ElasticModuli):
+            raise SceneError("bonds break in elastic bodies only: conduction has no bond energy")
+        if criterion not in ("total", "axial"):
+            raise SceneError(f"criterion must be 'total' or 'axial', not {criterion!r}")
+        _refuse_negative(moduli, criterion)
+        half = family.size // 2
+        lattice = discretisation.lattice
+        self.lattice, self.family, self.tension_only = lattice, family, bool(tension_only)
+        self.critical = critical_energies(toughness, family)
+        #: Energy of a pair per unit of its energy density, m⁴ per unit thickness.
+        self.pair = family.weight[:half] * family.cell**2
+        axial = 0.5 * moduli.normal[:half] / family.length[:half]
+        shear = 0.5 * moduli.shear[:half] / family.length[:half]
+        geometry = np.column_stack(
+            [family.normal[:half], 0.5 * family.length[:half] / family.spacing, axial, shear]
+        )
+        stored = geometry.copy()
+        stored[:, 3:] *= self.pair[:, None]
+        self._stored = stored
+        load = geometry.copy()
+        load[:, 3:] /= self.critical[:, None]
+        if criterion == "axial":
+            load[:, 4] = 0.0
+        self._load = load
+        row = lattice.shape[1]
+        dx, dy = family.offsets[:half].T
+        self._steps = (dy * row + dx).astype(np.uint64)
+        rows, columns = lattice.cells
+        self._cells = rows * row + columns
+        new = np.ones(lattice.count, dtype=bool)
+        new[1:] = (rows[1:] != rows[:-1]) | (columns[1:] != columns[:-1] + 1)
+        first = np.nonzero(new)[0]
+        size = np.diff(np.append(first, lattice.count))
+        self._segments = np.column_stack([self._cells[first], size, first]).astype(np.uint64)
+        self._number = lattice.number()
+        #: Factor of every bond as it was at the start, 0 where there is none, (half, N).
+        self.whole: Array = np.stack([discretisation.bonds.factor(o) for o in range(half)])
+        #: The same now.
+        self.factors: Array = self.whole.copy()
+        #: Bonds that must not break, (half, N), or None.
+        self.kept: Mask = self._kept(discretisation, no_fail)
+        self._out = np.empty_like(self.factors)
+        self._grids = np.zeros((2, 3, int(np.prod(lattice.shape))))
+
+    def _kept(self, discretisation: Discretisation, no_fail: tuple[Where, ...]) -> Mask:
+        zone = np.zeros(self.lattice.count, dtype=bool)
+        for where in no_fail:
+            zone |= select(self.lattice, where)
+        held: Mask = np.logical_and.reduce(discretisation.prescribed, axis=0)
+        rows, columns = self.lattice.cells
+        kept = np.zeros(self.factors.shape, dtype=bool)
+        for o, (dx, dy) in enumerate(self.family.offsets[: len(kept)]):
+            there = self._number[rows + dy, columns + dx]
+            # Between prescribed particles nothing can be relieved: the support is rigid.
+            kept[o] = zone | zone[there] | (held & held[there])
+        return kept
+
+    # ---- energies -----------------------------------------------------------------------
+
+    def _grid(self, which: int, unknowns: Array) -> Array:
+        grid = self._grids[which]
+        grid[: len(unknowns), self._cells] = np.nan_to_num(unknowns)
+        return grid
+
+    def utilisation(self, unknowns: Array) -> Array:
+        """f w / w_c of every bond, shape (half, N); 0 where it cannot break.
+
+        Parameters
+        ----------
+        unknowns : ndarray, shape (components, N)
+            u1, u2 and θ Δx.
+
+        Returns
+        -------
+        ndarray
+            Overwritten by the next call.
+        """
+        grid = self._grid(0, unknowns)
+        bond_kernels.bond_energies(
+            grid,
+            self._segments,
+            self._steps,
+            self._load,
+            self.factors,
+            self.tension_only,
+            self._out,
+        )
+        self._out[self.kept] = 0.0
+        return self._out
+
+    def stored(self, unknowns: Array, others: Array | None = None) -> float:
+        """Energy of all bonds between particles, J per unit thickness.
+
+        With `others`, half the mutual energy of the two fields.
+        """
+        grid = self._grid(0, unknowns)
+        other = grid if others is None else self._grid(1, others)
+        out = np.empty(len(self._segments))
+        bond_kernels.bond_work(
+            grid, other, self._segments, self._steps, self._stored, self.factors, out
+        )
+        return float(out.sum())
+
+    def energy_of(self, unknowns: Array, bonds: Indices) -> Array:
+        """Energy that single bonds hold, J per unit thickness; `bonds` are flat indices."""
+        o, p, q = self.ends(bonds)
+        nx, ny, half, a, b = self._stored[o].T
+        field = np.zeros((3, self.lattice.count))
+        field[: len(unknowns)] = np.nan_to_num(unknowns)
+        (dx, dy), turn = field[:2, q] - field[:2, p], field[2, q] + field[2, p]
+        shear = nx * dy - ny * dx - half * turn
+        return self.factors.ravel()[bonds] * (a * (nx * dx + ny * dy) ** 2 + b * shear**2)
+
+    def cost_of(self, bonds: Indices) -> Array:
+        """Energy that breaking these bonds takes, w_c α Λ Δv_p Δv_q."""
+        return (self.critical * self.pair)[bonds // self.lattice.count]
+
+    # ---- geometry -----------------------------------------------------------------------
+
+    def ends(self, bonds: Indices) -> tuple[Indices, Indices, Indices]:
+        """Half offset, particle of origin and particle at the far end of bonds by flat index."""
+        o, p = np.divmod(bonds, self.lattice.count)
+        rows, columns = self.lattice.cells
+        dx, dy = self.family.offsets[o].T
+        return o, p, self._number[rows[p] + dy, columns[p] + dx]
+
+    def midpoints(self, bonds: Indices) -> Array:
+        """Midpoints of bonds, shape (n, 2), m."""
+        points = self.lattice.points
+        _, p, q = self.ends(bonds)
+        return 0.5 * (points[p] + points[q])
+
+    def lengths(self, bonds: Indices) -> Array:
+        """Lengths of bonds, m."""
+        return self.family.length[bonds // self.lattice.count]
+
+    def of_particles(self, particles: Indices) -> Indices:
+        """Flat indices of all bonds with an end at one of `particles` that still exist."""
+        rows, columns = self.lattice.cells
+        half, count = self.factors.shape
+        mine = np.zeros(count, dtype=bool)
+        mine[particles] = True
+        found = []
+        for o, (dx, dy) in enumerate(self.family.offsets[:half]):
+            back = self._number[rows[particles] - dy, columns[particles] - dx]
+            starts = np.union1d(particles, back[back >= 0])
+            found.append(o * count + starts[self.factors[o, starts] != 0])
+        return np.concatenate(found)
+
+    def remove(self, bonds: Indices) -> None:
+        """Bonds that carry nothing from now on."""
+        self.factors.ravel()[bonds] = 0.0
+
+
+def next_batch(utilisation: Array, least: float, size: int) -> tuple[Indices, Array]:
+    """The most loaded bonds: `size` of them, or a few more where bonds tie.
+
+    Parameters
+    ----------
+    utilisation : ndarray, shape (half, N)
+    least : float
+        Bonds below this utilisation (less `TIE`) stay.
+    size : int
+
+    Returns
+    -------
+    flat indices, ascending, and their utilisations
+    """
+    flat = utilisation.ravel()
+    candidates = np.nonzero(flat >= max(least * (1 - TIE), np.finfo(float).tiny))[0]
+    values = flat[candidates]
+    if len(candidates) > size:
+        threshold = np.partition(values, len(values) - size)[len(values) - size] * (1 - TIE)
+        taken = values >= threshold
+        candidates, values = candidates[taken], values[taken]
+    return candidates, values
+
+
+def _refuse_negative(moduli: ElasticModuli, criterion: Criterion) -> None:
+    if moduli.normal.min() < 0:
+        raise SceneError(
+            "some bonds of this material have a negative axial stiffness k_n: stretching them "
+            "sets energy free, so that no energy criterion says when they break. Use "
+            "calibration='positive' or another m"
+        )
+    if criterion == "total" and moduli.shear.min() < 0:
+        raise SceneError(
+            "some bonds of this material have a negative shear stiffness k_t (ν > 1/3 in plane "
+            "stress, generally C66 < C12): sheared bonds store negative energy, so that "
+            "w ≥ w_c does not say when they break. Use criterion='axial' (the energy of the "
+            "stretch alone), or calibration='positive' where C66 ≥ C12"
+        )

@@ -1,0 +1,159 @@
+"""Save a fracture run and go on from there with the same results to the last bit.
+
+What is saved is all that decides how a run goes on: which bonds are gone, the last solution (the
+next solve starts from it), and the preconditioner's coarse matrix with the bonds it was made for
+(another one would need other iterations and end in other last bits), right-hand side included.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy import sparse
+
+from ..errors import SceneError
+from ..linear.two_level import TwoLevel
+from ..operators.bond_operator import BondOperator
+
+if TYPE_CHECKING:
+    from .growth import Growth
+
+
+def fingerprint(run: Growth) -> str:
+    """Hash of everything that decides the results of a run."""
+    start, bonds = run.body.start, run.bonds
+    digest = hashlib.sha256()
+    parts: list[Any] = [
+        start.lattice.mask,
+        start.lattice.points[0],
+        start.family.offsets,
+        start.operator.blocks,
+        start.prescribed,
+        start.values,
+        start.load,
+        start.pull,
+        start.scene.surface,
+        bonds.whole,
+        bonds.critical,
+        bonds.kept,
+        run.programme,
+        run.options,
+        run.history.names,
+    ]
+    if start.bonds.ended is not None:
+        ended = start.bonds.ended
+        parts += [ended.particle, ended.offset, ended.edge, ended.position, ended.length]
+    for part in parts:
+        if isinstance(part, np.ndarray):
+            digest.update(f"{part.dtype}{part.shape}".encode())
+            digest.update(np.ascontiguousarray(part).tobytes())
+        else:
+            digest.update(repr(part).encode())
+    return digest.hexdigest()
+
+
+def save(run: Growth, path: str | os.PathLike[str], mark: str) -> None:
+    """Write the run to `path`; a kill at any moment leaves the old file or the new one."""
+    body, ledger = run.body, run.ledger
+    arrays: dict[str, Any] = {
+        "fingerprint": mark,
+        "factor": run.factor,
+        "target": run.target,
+        "resting": run.resting,
+        "reason": run.reason,
+        "breaks": np.array(run.log, dtype=np.float64).reshape(-1, 4),
+        "steps": np.array(run.solves, dtype=np.int64).reshape(-1, 3),
+        "history": run.history.array,
+        "ledger": [ledger.work, ledger.dissipated, ledger.excess, ledger.deflection],
+        "aside": body.aside,
+        "x": body.x,
+        "rhs": np.zeros(0) if body.rhs is None else body.rhs,
+        "counters": [body.iterations, int(body.worn), body.built, int(run.precise)],
+        "residual": [body.residual, body.seconds, body.pace],
+    }
+    if isinstance(body.preconditioner, TwoLevel):
+        coarse = body.preconditioner.coarse
+        arrays |= {
+            "coarse_data": coarse.data,
+            "coarse_indices": coarse.indices,
+            "coarse_indptr": coarse.indptr,
+            "coarse_cells": body.preconditioner.hats.cells,
+        }
+    _write(path, arrays)
+
+
+def load(run: Growth, path: str | os.PathLike[str], mark: str) -> bool:
+    """Bring a fresh run to where the file left it; whether there was a file.
+
+    Raises
+    ------
+    SceneError
+        If the file belongs to another scene, toughness or programme, or is no checkpoint.
+    """
+    found = _read(path, mark)
+    if found is None:
+        return False
+    body, bonds, ledger = run.body, run.bonds, run.ledger
+    run.factor, run.target = float(found["factor"]), int(found["target"])
+    run.resting, run.reason = bool(found["resting"]), str(found["reason"])
+    run.log += [(int(b), int(s), float(f), bool(d)) for b, s, f, d in found["breaks"]]
+    run.solves += [(int(a), int(b), bool(c)) for a, b, c in found["steps"]]
+    run.history.rows += found["history"].tolist()
+    ledger.work, ledger.dissipated, ledger.excess, ledger.deflection = found["ledger"].tolist()
+    body.aside = found["aside"]
+    if body.aside.any():
+        body.bonds = body.bonds.without_ends(np.nonzero(body.aside)[0])
+    gone = np.array([entry[0] for entry in run.log], dtype=np.int64)
+    iterations, worn, built, precise = found["counters"].tolist()
+    body.iterations, body.worn, run.precise = iterations, bool(worn), bool(precise)
+    body.residual, body.seconds, body.pace = found["residual"].tolist()
+    if "coarse_data" in found:
+        # The preconditioner belongs to the bonds there were when it was built.
+        body.break_bonds(*bonds.ends(gone[:built]))
+        operator: BondOperator = body.positive()
+        parts = (found["coarse_data"], found["coarse_indices"], found["coarse_indptr"])
+        coarse = sparse.csc_array(parts, shape=(len(parts[2]) - 1,) * 2)
+        body.preconditioner = TwoLevel(operator, int(found["coarse_cells"]), coarse=coarse)
+        body.built = built
+        gone_later = gone[built:]
+    else:
+        gone_later = gone
+    body.break_bonds(*bonds.ends(gone_later))
+    bonds.remove(gone)
+    body.x = found["x"]
+    body.rhs = found["rhs"] if len(found["rhs"]) else None
+    return True
+
+
+def _write(path: str | os.PathLike[str], arrays: Mapping[str, Any]) -> None:
+    target = Path(path)
+    partial = target.with_name(f"{target.name}.{os.getpid()}.partial")
+    try:
+        with open(partial, "wb") as file:
+            np.savez(file, **arrays)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(partial, target)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def _read(path: str | os.PathLike[str], mark: str) -> dict[str, Any] | None:
+    if not Path(path).exists():
+        return None
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            found = dict(file)
+    except (OSError, ValueError, EOFError) as error:
+        raise SceneError(f"{path} is no checkpoint: {error}") from error
+    if str(found.get("fingerprint")) != mark:
+        raise SceneError(
+            f"the checkpoint {path} belongs to another scene, toughness or programme: remove it "
+            f"or name another file"
+        )
+    return found

@@ -1,0 +1,292 @@
+"""Equilibrium of a body whose bonds break, at unit load, again and again.
+
+Everything that a new break leaves as it was is used again: bond arrays, the operator's parts, the
+last solution as a first guess, and the preconditioner, which stays while it serves and is brought
+up to date (only what feels the broken bonds) when iterations tell that it does not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse.linalg import LinearOperator
+from threadpoolctl import threadpool_limits
+
+from ..analyses.statics import preconditioner
+from ..bonds.bonds import Bonds
+from ..errors import ConvergenceError, MechanismError
+from ..linear.krylov import Task, condensed_gradients, conjugate_gradients
+from ..linear.two_level import TwoLevel
+from ..operators.bond_operator import BondOperator
+from ..problem import mechanisms
+from ..problem.rigid import unheld
+from ..scene import Discretisation
+from ..solution import Solution, Statistics
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Indices = NDArray[np.int64]
+
+# Iterations above those that a fresh preconditioner would have taken after which it is brought up
+# to date.
+_PATIENCE = 2
+
+
+@dataclass(frozen=True)
+class Step:
+    """What one solve took and gave.
+
+    Attributes
+    ----------
+    iterations : int
+    refreshed : bool
+        Whether the preconditioner was brought up to date before it.
+    released : float
+        Potential energy that relaxing to the new equilibrium set free at unit load,
+        ½ d·(r₀ + r₁) with the change d of the unknowns and the residuals before and after,
+        J per unit thickness.
+    """
+
+    iterations: int
+    refreshed: bool
+    released: float
+
+
+class Equilibrium:
+    """Answer of a body to the unit load of its scene.
+
+    Parameters
+    ----------
+    discretisation : Discretisation
+    tolerance : float
+        Relative residual of every solve.
+    max_iterations : int
+
+    Attributes
+    ----------
+    bonds, operator
+        As they are now.
+    unknowns : ndarray, shape (components, N)
+        u1, u2 and θ Δx at unit load; NaN at particles set aside.
+    aside : ndarray of bool, shape (N,)
+        Particles that have come loose: no bond of theirs carries anything any more.
+    """
+
+    def __init__(
+        self, discretisation: Discretisation, tolerance: float, max_iterations: int
+    ) -> None:
+        self.start = discretisation
+        self.bonds: Bonds = discretisation.bonds
+        self.operator: BondOperator = discretisation.operator
+        self.tolerance, self.max_iterations = tolerance, max_iterations
+        self.sign = discretisation.stability.sign
+        self.aside = np.zeros(discretisation.lattice.count, dtype=bool)
+        self.x: Array = np.zeros(self.operator.shape[0])
+        self.preconditioner: LinearOperator | None = None
+        #: Right-hand side, kept while no bond of a prescribed particle breaks.
+        self.rhs: Array | None = None
+        self.iterations, self.residual, self.seconds = 0, 0.0, 0.0
+        # For the preconditioner: iterations a decade of the residual when it was fresh, whether it
+        # is due, and how many bonds were gone when it was made.
+        self.pace, self.worn, self.built, self.gone = 0.0, False, 0, 0
+
+    @property
+    def prescribed(self) -> Mask:
+        """Prescribed unknowns, those of particles set aside included, (components, N)."""
+        return self.start.prescribed | self.aside
+
+    @property
+    def unknowns(self) -> Array:
+        """Values of all unknowns at unit load, shape (components, N), NaN where set aside."""
+        return self.discretisation().field(self.x)
+
+    def discretisation(self, factor: float = 1.0) -> Discretisation:
+        """The body as it is now, under `factor` times its scene's load."""
+        values = self.start.values * factor
+        values[:, self.aside] = np.nan
+        return replace(
+            self.start,
+            bonds=self.bonds,
+            operator=self.operator,
+            values=values,
+            load=self.start.load * factor,
+            pull=None if self.start.pull is None else self.start.pull * factor,
+            prescribed=self.prescribed,
+        )
+
+    def solution(self, factor: float) -> Solution:
+        """The last equilibrium under `factor` times the load, for recovery."""
+        operator, stability = self.operator, self.start.stability
+        statistics = Statistics(
+            particles=self.start.lattice.count,
+            unknowns=operator.shape[0] if operator.fixed is None else int((~operator.fixed).sum()),
+            bonds=operator.directed_bonds,
+            method=f"fracture, {type(self.preconditioner).__name__}",
+            sign=stability.sign,
+            margin=stability.margin,
+            iterations=self.iterations,
+            residual=self.residual,
+            setup_seconds=self.start.seconds,
+            solve_seconds=self.seconds,
+            peak_memory=0,
+        )
+        now = self.discretisation(factor)
+        return Solution(now, now.field(factor * self.x), statistics, self.preconditioner)
+
+    def surface_energy(self, others: Array | None = None) -> float:
+        """Energy of the bonds that end at the surface at unit load, J per unit thickness.
+
+        With `others`, values of all unknowns and zero at the surface's nodes, half the mutual
+        energy of the two fields.
+        """
+        surface = self.operator.surface
+        if surface is None:
+            return 0.0
+        values = np.nan_to_num(self.unknowns[:, surface.particles])
+        nodal = surface.nodal(values, self.start.pull)
+        if others is None:
+            found = surface.energy(values, nodal, values, nodal)
+        else:
+            found = surface.energy(values, nodal, others[:, surface.particles], 0.0 * nodal)
+        return found * self.start.family.cell
+
+    def surface_load_work(self) -> float:
+        """Σ f·u of the loads on the surface's nodes at unit load, J per unit thickness."""
+        surface, pull = self.operator.surface, self.start.pull
+        if surface is None or pull is None:
+            return 0.0
+        nodal = surface.nodal(np.nan_to_num(self.unknowns[:, surface.particles]), pull)
+        return float((pull[:, surface.nodes] * nodal).sum()) * self.start.family.cell
+
+    # ---- changes ------------------------------------------------------------------------
+
+    def break_bonds(self, offsets: Indices, origins: Indices, ends: Indices) -> None:
+        """Break bonds, given by half offset and both ends; then `solve` for the equilibrium."""
+        self.bonds = self.bonds.breaking(offsets, origins)
+        self.gone += len(offsets)
+        # What prescribed particles exert changes only with bonds of theirs.
+        touched: Mask = np.logical_or.reduce(self.start.prescribed, axis=0)
+        if touched[origins].any() or touched[ends].any():
+            self.rhs = None
+        self.operator = BondOperator(self.bonds, self.operator.moduli, self.prescribed)
+
+    def set_aside(self, particles: Indices) -> None:
+        """Take particles out of the equations whose bonds have all been broken.
+
+        Raises
+        ------
+        MechanismError
+            If a load acts on one of them, or nothing is left.
+        """
+        unknowns = self.unknowns
+        self.aside[particles] = True
+        nodes = None if self.operator.surface is None else self.operator.surface.nodes
+        self.bonds = self.bonds.without_ends(particles)
+        if self.start.load[:, self.aside].any() or self._unloaded(nodes):
+            raise MechanismError("a part on which a load acts has come loose")
+        if self.prescribed.all():
+            raise MechanismError("all of the body that was free has come loose")
+        self.operator = BondOperator(self.bonds, self.operator.moduli, self.prescribed)
+        self.rhs = None
+        self.x = unknowns[:, self.operator.active].ravel()
+        self.preconditioner = None
+
+    def _unloaded(self, nodes: Indices | None) -> bool:
+        """Whether loads act on nodes at which bonds ended and no longer do."""
+        if nodes is None or self.start.pull is None:
+            return False
+        left = np.zeros(self.start.pull.shape[1], dtype=bool)
+        if self.bonds.ended is not None:
+            left[self.bonds.ended.outline.edges[self.bonds.ended.edge]] = True
+        return bool(self.start.pull[:, nodes[~left[nodes]]].any())
+
+    def slack(self) -> Indices:
+        """Particles whose own bonds leave them a motion without stiffness."""
+        return mechanisms.slack_particles(self.operator)
+
+    def loose(self) -> Indices:
+        """Particles of parts that nothing holds any more."""
+        held = self.prescribed
+        found = [members for members, _ in unheld(self.bonds, held, True)]
+        none = np.zeros(len(self.aside), dtype=bool)
+        return np.nonzero(np.logical_or.reduce([none, *found]) & ~held.all(axis=0))[0]
+
+    def hinged(self) -> Indices:
+        """Particles that can move without straining a bond (slow: only after a failed solve)."""
+        return mechanisms.zero_energy_particles(self.positive())
+
+    def positive(self) -> BondOperator:
+        """The operator, or its positive companion if it is indefinite."""
+        return self.operator.companion() if self.sign == "indefinite" else self.operator
+
+    # ---- solving ------------------------------------------------------------------------
+
+    def solve(self, tolerance: float | None = None) -> Step:
+        """Solve for the present bonds, from the last solution.
+
+        Parameters
+        ----------
+        tolerance : float, optional
+            A coarser one than that of the body.
+
+        Raises
+        ------
+        NegativeCurvatureError, ConvergenceError
+            As `solver.analyses.statics.solve`.
+        """
+        begun = perf_counter()
+        tolerance = self.tolerance if tolerance is None else tolerance
+        with threadpool_limits(limits=1, user_api="blas"):
+            operator = self.operator
+            if self.rhs is None:
+                self.rhs = self.discretisation().right_hand_side()
+            rhs = self.rhs
+            if operator.fixed is not None:
+                given = self.start.values[:, operator.active]
+                self.x.reshape(given.shape)[operator.fixed] = given[operator.fixed]
+            before = self.x
+            left = rhs - operator.matvec(before)
+            refreshed = self._prepare()
+            self.x, iterations = self._iterate(rhs, before, tolerance)
+            right = rhs - operator.matvec(self.x)
+            size, after = float(np.linalg.norm(rhs)), float(np.linalg.norm(right))
+            residual = after / size if size else 0.0
+            decades = np.log10(max(float(np.linalg.norm(left)), 1e-300) / max(after, 1e-300))
+            if refreshed:
+                self.pace = iterations / max(decades, 1.0)
+            # It has served; the next solve gets a fresh one.
+            self.worn = bool(iterations > self.pace * decades + _PATIENCE)
+            self.iterations += iterations
+            self.residual, self.seconds = residual, self.seconds + perf_counter() - begun
+            if not residual <= tolerance:
+                self.x = before
+                raise ConvergenceError(
+                    f"equilibrium stopped at a relative residual of {residual:.2e} after "
+                    f"{iterations} iterations; {tolerance:.1e} was asked for"
+                )
+            released = 0.5 * float((self.x - before) @ (left + right))
+        return Step(iterations, refreshed, released * self.start.family.cell)
+
+    def _prepare(self) -> bool:
+        """Make or bring up to date the preconditioner where it is due; whether it was."""
+        known = self.preconditioner
+        if isinstance(known, TwoLevel):
+            if not self.worn:
+                return False
+            self.preconditioner = known.updated(self.positive())
+        else:
+            self.preconditioner = preconditioner(self.operator, self.sign, "auto")
+        self.built = self.gone
+        return True
+
+    def _iterate(self, rhs: Array, start: Array, tolerance: float) -> tuple[Array, int]:
+        assert self.preconditioner is not None
+        task = Task(rhs, start, tolerance, self.max_iterations)
+        if not rhs.any():
+            return np.zeros_like(rhs), 0
+        if self.sign == "indefinite":
+            return condensed_gradients(self.operator, self.preconditioner, task)
+        return conjugate_gradients(self.operator, self.preconditioner, task)

@@ -1,0 +1,351 @@
+"""The state of a body whose bonds break, and how it goes on from one equilibrium to the next.
+
+`solver.fracture.grow` leads it; what the energies are, is said there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import ConvergenceError, NegativeCurvatureError, SceneError
+from ..problem.conditions import Where
+from ..scene import Discretisation, Scene
+from ..solution import Solution
+from . import crack_path
+from .breaking import TIE, Breakable, Criterion, Critical, next_batch
+from .crack_path import CrackPath
+from .damaged_body import Equilibrium
+from .ledger import History, Ledger
+from .programme import Programme
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Indices = NDArray[np.int64]
+
+# Share of the bonds that a straight cut breaks per cell of its length: the default batch. Larger
+# and smaller ones (0.03 to 0.4) give the same paths and loads.
+_BATCH = 0.2
+# Relative residual within an avalanche.
+_ROUGH = 1e-5
+# Utilisation, relative to what is to break or has broken, that is the solver's noise.
+_NOISE = 1e-10
+
+
+class Growth:
+    """A body whose bonds break: what `until` and monitors see, and what `grow` returns.
+
+    Attributes
+    ----------
+    scene : Scene
+    factor : float
+        Load factor now.
+    history : History
+        Loads, energies, counts and the crack's advance at every equilibrium.
+    reason : str
+        Why the run has ended; empty while it goes on.
+    batch : int
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        toughness: Critical | ArrayLike,
+        programme: Programme,
+        no_fail: tuple[Where, ...],
+        tension_only: bool,
+        criterion: Criterion,
+        batch: int | None,
+        tolerance: float,
+        max_iterations: int,
+        monitors: Mapping[str, Callable[[Growth], float]],
+    ) -> None:
+        start = scene.discretise(growing=True)
+        self.scene, self.programme, self.reason = scene, programme, ""
+        self.bonds = Breakable(start, toughness, no_fail, tension_only, criterion)
+        self.batch = _batch_size(batch, start.family.offsets)
+        self.body = Equilibrium(start, tolerance, max_iterations)
+        self.ledger = Ledger(self.body, self.bonds)
+        # Solver options that decide results, for checkpoints.
+        self.options = (tension_only, criterion, self.batch, tolerance, max_iterations)
+        self.history = History(tuple(monitors))
+        self._monitors = monitors
+        self.factor, self.target, self.resting = programme.start, 0, True
+        # Whether the last equilibrium keeps the tolerance, or is one within an avalanche.
+        self.precise = True
+        self.log: list[tuple[int, int, float, bool]] = []
+        self.solves: list[tuple[int, int, bool]] = []
+        self._at_edge = _edge_particles(start)
+        self._starts = crack_path.initial_tips(scene.cracks, scene.region)
+        self._paths: tuple[int, list[CrackPath]] = (-1, [])
+
+    # ---- what has happened ----------------------------------------------------------------
+
+    @property
+    def breaks(self) -> NDArray[Any]:
+        """Broken bonds in their order: fields offset (half), origin, step, factor.
+
+        `step` is the number of the solve before which the bond broke, `factor` the load then.
+        Bonds of one batch are in no order.
+        """
+        kept = [b[:3] for b in self.log if not b[3]]
+        count = self.bonds.lattice.count
+        return np.array(
+            [(b // count, b % count, step, factor) for b, step, factor in kept],
+            dtype=[("offset", "i8"), ("origin", "i8"), ("step", "i8"), ("factor", "f8")],
+        )
+
+    @property
+    def steps(self) -> NDArray[Any]:
+        """Every solve: bonds broken before it, iterations, preconditioner brought up to date."""
+        return np.array(
+            self.solves, dtype=[("broken", "i8"), ("iterations", "i8"), ("refreshed", "?")]
+        )
+
+    @property
+    def broken_bonds(self) -> Indices:
+        """Flat indices (half offset · N + particle of origin) of broken bonds, in their order."""
+        return np.array([b[0] for b in self.log if not b[3]], dtype=np.int64)
+
+    @property
+    def broken(self) -> Mask:
+        """Broken bonds as `Scene.broken` returns them, shape (family size / 2, N)."""
+        mask = np.zeros(self.bonds.factors.shape, dtype=bool)
+        mask.ravel()[self.broken_bonds] = True
+        return mask
+
+    @property
+    def loose(self) -> Mask:
+        """Particles that came loose and were set aside, shape (N,)."""
+        return self.body.aside
+
+    @property
+    def damage(self) -> Array:
+        """Damage of every particle (Eq. 105), cuts by the scene's cracks included, shape (N,)."""
+        return crack_path.damage(self.body.bonds)
+
+    @property
+    def midpoints(self) -> Array:
+        """Midpoints of the broken bonds, in their order, shape (n, 2), m."""
+        return self.bonds.midpoints(self.broken_bonds)
+
+    @property
+    def paths(self) -> list[CrackPath]:
+        """Way of each crack tip of the scene, the furthest first; see `crack_path`."""
+        if self._paths[0] != len(self.log):
+            broken = self.broken_bonds
+            short = self.bonds.lengths(broken) <= crack_path.SHORT * self.scene.spacing
+            marks = self.bonds.midpoints(broken[short])
+            starts = self._starts
+            if not len(starts) and len(marks):
+                first = [b[1] for b in self.log if not b[3]]
+                early = np.array(first)[short]
+                starts = marks[early == early.min()].mean(axis=0)[None]
+            traced = crack_path.trace(starts, marks, self.scene.spacing)
+            self._paths = len(self.log), traced
+        return self._paths[1]
+
+    @property
+    def path(self) -> Array:
+        """Points of the furthest path, shape (n, 2), m; empty before anything has grown."""
+        return self.paths[0].points if self.paths else np.zeros((0, 2))
+
+    @property
+    def tip(self) -> Array:
+        """Tip of the furthest path, shape (2,), m; NaN before there is one."""
+        return self.paths[0].tip if self.paths else np.full(2, np.nan)
+
+    @property
+    def advance(self) -> float:
+        """Distance of the furthest tip from where its crack began to grow, m."""
+        return self.paths[0].advance if self.paths else 0.0
+
+    @property
+    def unknowns(self) -> Array:
+        """u1, u2 and θ Δx under the present load, shape (components, N)."""
+        return self.factor * self.body.unknowns
+
+    @property
+    def solution(self) -> Solution:
+        """The present equilibrium as a solution, for `solver.recovery` and export."""
+        return self.body.solution(self.factor)
+
+    # ---- what happens ---------------------------------------------------------------------
+
+    def begin(self) -> None:
+        """First equilibrium, loaded to the first factor without breaking anything."""
+        step = self.body.solve()
+        self.solves.append((0, step.iterations, step.refreshed))
+        self.ledger.opened()
+        self.ledger.move(0.0, self.factor)
+        self.record()
+
+    def proceed(self) -> None:
+        """On to the next equilibrium: a batch of bonds breaks, or the load changes."""
+        utilisation = self.bonds.utilisation(self.body.unknowns)
+        if self.programme.control == "following":
+            self._follow(utilisation)
+            return
+        # Bonds are overloaded where λ² q ≥ 1.
+        least = 1.0 / self.factor**2 if self.factor else np.inf
+        batch, _ = next_batch(utilisation, least, self.batch)
+        if len(batch):
+            self.resting = False
+            self._break(batch)
+        elif not self.precise:
+            self._solve(0)
+        elif not self.resting:
+            self._drop(self.body.loose())
+            self.resting = True
+            self.record()
+        else:
+            self._load(float(utilisation.max(initial=0.0)))
+
+    def _load(self, largest: float) -> None:
+        """Change the load to the next event or the next target."""
+        targets = self.programme.targets
+        target = targets[self.target]
+        event = self._event(largest)
+        if not np.isfinite(event) and not np.isfinite(target):
+            self.reason = "no load breaks another bond"
+            return
+        if target > self.factor and event <= target * (1 + TIE):
+            self._move(self.programme.reach(max(event, self.factor), target))
+            self.record()
+            return
+        if not np.isfinite(target):
+            self.reason = "no load breaks another bond"
+            return
+        self._move(target)
+        self.record()
+        self.target += 1
+        if self.target == len(targets):
+            self.reason = "the programme is done"
+
+    def _follow(self, utilisation: Array) -> None:
+        """Break the next batch at the load that just overloads all of it."""
+        # What next to nothing loads is noise, and no part of a batch.
+        least = _NOISE * float(utilisation.max(initial=0.0))
+        batch, load = next_batch(utilisation, least, self.batch)
+        event = self._event(float(load.min())) if len(batch) else np.inf
+        if not np.isfinite(event):
+            batch = batch[:0]
+        if event > self.programme.stop or not len(batch):
+            self._drop(self.body.loose())
+            if np.isfinite(self.programme.stop):
+                self._move(self.programme.stop)
+            self.resting = True
+            self.record()
+            self.reason = "the programme is done" if len(batch) else "no load breaks another bond"
+            return
+        self._move(max(event, self.programme.start))
+        self.resting = True
+        self.record()
+        self.resting = False
+        self._break(batch)
+
+    def _parts_an_edge(self, batch: Indices) -> bool:
+        """Whether a bond between neighbours beside a free edge is to break."""
+        assert self._at_edge is not None
+        _, origins, ends = self.bonds.ends(batch)
+        near = self.bonds.lengths(batch) <= crack_path.SHORT * self.scene.spacing
+        return bool((near & self._at_edge[origins] & self._at_edge[ends]).any())
+
+    def _event(self, largest: float) -> float:
+        """Load factor of the next event; infinite if bonds bear nothing but the solver's noise."""
+        if largest <= 0.0:
+            return float(np.inf)
+        event = float(1.0 / np.sqrt(largest))
+        before = max((entry[2] for entry in self.log), default=np.inf)
+        return event if event * np.sqrt(_NOISE) < before else float(np.inf)
+
+    def _move(self, factor: float) -> None:
+        self.ledger.move(self.factor, factor)
+        self.factor = factor
+
+    def _break(self, batch: Indices) -> None:
+        if self._at_edge is not None and self._parts_an_edge(batch):
+            self.reason = (
+                "a crack has come to a free edge, and surface='extrapolated' cannot part edges: "
+                "use surface='volume' beyond"
+            )
+            return
+        self.ledger.broken(batch, self.factor)
+        self._remove(batch, dropped=False)
+        self._drop(self.body.slack())
+        # Within an avalanche it is enough to tell overloaded bonds from others.
+        rough = self.programme.control == "fixed"
+        self._solve(len(batch), max(_ROUGH, self.body.tolerance) if rough else None)
+
+    def _solve(self, broken: int, tolerance: float | None = None) -> None:
+        """Equilibrium after `broken` bonds broke, to a coarser `tolerance` if one is given."""
+        try:
+            step = self.body.solve(tolerance)
+        except (ConvergenceError, NegativeCurvatureError):
+            # A part that moves freely may be behind it.
+            particles = self.body.loose()
+            if not len(particles):
+                particles = self.body.hinged()
+            if not len(particles):
+                raise
+            self._drop(particles)
+            step = self.body.solve(tolerance)
+        self.precise = tolerance is None or tolerance <= self.body.tolerance
+        self.solves.append((broken, step.iterations, step.refreshed))
+        self.ledger.solved(step, self.factor)
+
+    def _remove(self, bonds: Indices, dropped: bool) -> None:
+        step = len(self.solves)
+        self.log += [(int(b), step, self.factor, dropped) for b in bonds]
+        self.bonds.remove(bonds)
+        self.body.break_bonds(*self.bonds.ends(bonds))
+
+    def _drop(self, particles: Indices) -> None:
+        """Set aside particles that cannot carry load, and others that this leaves slack."""
+        while len(particles):
+            bonds = self.bonds.of_particles(particles)
+            self.ledger.dropped(bonds, self.factor)
+            if len(bonds):
+                self._remove(bonds, dropped=True)
+            self.body.set_aside(particles)
+            particles = self.body.slack()
+
+    def record(self) -> None:
+        """Another line of the history."""
+        steps, tip = self.steps, self.tip
+        self.history.add(
+            factor=self.factor,
+            **self.ledger.row(self.factor),
+            broken=len(self.broken_bonds),
+            loose=int(self.loose.sum()),
+            solves=len(steps),
+            iterations=int(steps["iterations"].sum()),
+            advance=self.advance,
+            tip_x=float(tip[0]),
+            tip_y=float(tip[1]),
+            settled=float(self.resting),
+            **{name: float(monitor(self)) for name, monitor in self._monitors.items()},
+        )
+
+
+def _edge_particles(start: Discretisation) -> Mask | None:
+    """Particles within a cell of an edge of the region (not of a crack's face), or None."""
+    ended = start.bonds.ended
+    if ended is None:
+        return None
+    found = np.zeros(start.lattice.count, dtype=bool)
+    near = (ended.outline.face[ended.edge] == 0) & (ended.length < start.family.spacing)
+    found[ended.particle[near]] = True
+    return found
+
+
+def _batch_size(batch: int | None, offsets: NDArray[np.int64]) -> int:
+    if batch is None:
+        # Bonds that a cut along a row of the lattice breaks per cell.
+        return max(1, round(_BATCH * float(np.abs(offsets[:, 1]).sum()) / 2))
+    if isinstance(batch, bool) or int(batch) != batch or batch < 1:
+        raise SceneError(f"a batch holds at least one bond, not {batch}")
+    return int(batch)

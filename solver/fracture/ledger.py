@@ -1,0 +1,172 @@
+"""Books of a fracture run: energies as they occur, and the history of every equilibrium."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .breaking import Breakable
+from .damaged_body import Equilibrium, Step
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+class Ledger:
+    """Energies of a body whose bonds break, J per unit thickness.
+
+    Attributes
+    ----------
+    work : float
+        Of supports and loads.
+    dissipated : float
+        w_c α Λ Δv Δv of all broken bonds.
+    excess : float
+        What breaking set free beyond that.
+    """
+
+    def __init__(self, body: Equilibrium, bonds: Breakable) -> None:
+        self.body, self.bonds = body, bonds
+        self.work = self.dissipated = self.excess = 0.0
+        self.deflection = 0.0
+
+    def opened(self) -> None:
+        """The first equilibrium at unit load is known."""
+        self.deflection = self._load_work()
+
+    def _load_work(self) -> float:
+        """Σ f·u Δv of the loads at unit load, prescribed unknowns left out."""
+        start = self.body.start
+        free = np.where(self.body.prescribed, 0.0, start.load)
+        found = float((free * np.nan_to_num(self.body.unknowns)).sum()) * start.family.cell
+        return found + self.body.surface_load_work()
+
+    def _support_work(self) -> float:
+        """Σ R·u Δv of the supports at unit load.
+
+        From bond forces, not from the stored energy: the mutual energy of the present field and
+        the field that is the prescribed values and zero elsewhere.
+        """
+        prescribed = np.where(self.body.start.prescribed, self.body.start.values, 0.0)
+        bonds = self.bonds.stored(self.body.unknowns, prescribed)
+        return 2.0 * (bonds + self.body.surface_energy(prescribed))
+
+    def _stored(self) -> float:
+        """Energy of all bonds at unit load."""
+        return self.bonds.stored(self.body.unknowns) + self.body.surface_energy()
+
+    def move(self, before: float, after: float) -> None:
+        """The load factor changes while no bond breaks."""
+        self.work += 0.5 * (after**2 - before**2) * (self._support_work() + self.deflection)
+
+    def broken(self, bonds: Indices, factor: float) -> None:
+        """Bonds are about to break under this load factor."""
+        cost = float(self.bonds.cost_of(bonds).sum())
+        self.dissipated += cost
+        self.excess += self._held(bonds, factor) - cost
+
+    def dropped(self, bonds: Indices, factor: float) -> None:
+        """Bonds of parts that are set aside go, without cost."""
+        self.excess += self._held(bonds, factor)
+
+    def _held(self, bonds: Indices, factor: float) -> float:
+        return factor**2 * float(self.bonds.energy_of(self.body.unknowns, bonds).sum())
+
+    def solved(self, step: Step, factor: float) -> None:
+        """A new equilibrium was found at this factor."""
+        deflection = self._load_work()
+        self.work += factor**2 * (deflection - self.deflection)
+        self.excess += factor**2 * step.released
+        self.deflection = deflection
+
+    def row(self, factor: float) -> dict[str, float]:
+        """What the history holds of it, see `History`."""
+        return {
+            "force": factor * self._support_work(),
+            "displacement": factor * self.deflection,
+            "work": self.work,
+            "stored": factor**2 * self._stored(),
+            "dissipated": self.dissipated,
+            "excess": self.excess,
+        }
+
+
+class History:
+    """One value a record of everything that is recorded, as arrays.
+
+    Records are made when the load has arrived at an event and when the body has come to rest
+    after it (``settled``), both of them equilibria without an overloaded bond or about to break
+    one; where the load follows the crack, before every batch.
+
+    Columns
+    -------
+    factor
+        Load factor λ.
+    force
+        What is conjugate to λ in the work of the supports, dW = force dλ: Σ R·Û, with the
+        prescribed values Û at λ = 1. For a grip moved by λ u it is u times the grip's force.
+    displacement
+        The same of loads, Σ F·u with the loads F at λ = 1.
+    work, stored, dissipated, excess
+        J per unit thickness.
+    broken, loose, solves, iterations
+        Bonds, particles set aside, solves and iterations so far.
+    advance, tip_x, tip_y
+        Of the furthest crack tip, m; see `solver.fracture.crack_path`.
+    settled
+        1 at rest, 0 where a run ended in the middle of an avalanche.
+    """
+
+    NAMES = (
+        "factor",
+        "force",
+        "displacement",
+        "work",
+        "stored",
+        "dissipated",
+        "excess",
+        "broken",
+        "loose",
+        "solves",
+        "iterations",
+        "advance",
+        "tip_x",
+        "tip_y",
+        "settled",
+    )
+
+    def __init__(self, monitors: Sequence[str] = ()) -> None:
+        taken = set(monitors) & set(self.NAMES)
+        if taken:
+            raise ValueError(f"monitors need names of their own, not {', '.join(sorted(taken))}")
+        self.names = (*self.NAMES, *monitors)
+        self.rows: list[list[float]] = []
+
+    def add(self, **values: float) -> None:
+        """Another record."""
+        self.rows.append([float(values[name]) for name in self.names])
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __getitem__(self, name: str) -> Array:
+        """A column by name."""
+        k = self.names.index(name)
+        return np.array([row[k] for row in self.rows])
+
+    def __getattr__(self, name: str) -> Array:
+        if name.startswith("_") or name not in self.__dict__.get("names", ()):
+            raise AttributeError(name)
+        return self[name]
+
+    @property
+    def array(self) -> Array:
+        """All records, shape (records, names)."""
+        return np.array(self.rows).reshape(-1, len(self.names))
+
+    @property
+    def imbalance(self) -> Array:
+        """work − stored − dissipated − excess, J per unit thickness: rounding and tolerance."""
+        return self["work"] - self["stored"] - self["dissipated"] - self["excess"]

@@ -1,0 +1,159 @@
+"""Quasi-static fracture: bonds break, the body finds a new equilibrium, cracks grow.
+
+`grow` raises the load factor of a scene from event to event. A bond breaks when its energy
+reaches its critical value (`breaking`); at an event the most loaded bonds break in small
+batches, each followed by a new equilibrium, until no bond is overloaded. All loads and prescribed
+values scale with the factor, so that one solve at unit load per broken state says everything.
+
+Energies are booked as they occur, per unit thickness: *work* of supports and loads along the
+straight pieces of the load path; *stored* energy of all bonds, summed anew; *dissipated* energy,
+w_c of every broken bond; and *excess*, what breaking sets free beyond that: what a bond held more
+than its w_c when its batch broke, and the potential energy that the body lost in finding its new
+equilibrium (kinetic energy, in a real body). Their balance is a check, not a definition.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..errors import MechanismError, SceneError
+from ..problem.conditions import Where
+from ..scene import Scene
+from . import checkpoint as state_file
+from .breaking import Criterion, Critical
+from .growth import Growth
+from .programme import Programme
+
+__all__ = ["Growth", "grow"]
+
+
+def grow(
+    scene: Scene,
+    toughness: Critical | ArrayLike,
+    programme: Programme | None = None,
+    *,
+    no_fail: Sequence[Where] = (),
+    tension_only: bool = True,
+    criterion: Criterion = "total",
+    batch: int | None = None,
+    tolerance: float = 1e-8,
+    max_iterations: int = 2_000,
+    max_solves: int | None = None,
+    until: Callable[[Growth], bool] | None = None,
+    monitors: Mapping[str, Callable[[Growth], float]] | None = None,
+    checkpoint: str | os.PathLike[str] | None = None,
+    every: int = 50,
+) -> Growth:
+    """Let cracks grow in an elastic scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Elastic. What it prescribes and applies is the load at factor 1; all of it scales.
+    toughness : object with ``energies(family)``, or array
+        Critical bond energy densities w_c of the family's offsets, J/m⁶ (`solver.Toughness`).
+    programme : Programme, optional
+        By default the load rises from event to event until `until` says stop.
+    no_fail : sequence of Region or callable
+        Where bonds never break: those with an end in a region or where ``f(x, y)`` is true.
+        Bonds between two prescribed particles never do.
+    tension_only : bool
+        Only bonds with s ≥ 0 break.
+    criterion : {"total", "axial"}
+        Energy that is compared with w_c; see `breaking.Breakable` for materials with
+        negative bond stiffness.
+    batch : int, optional
+        Most bonds to break between two equilibria (ties are broken together). By default a fifth
+        of what a straight cut breaks per cell of its length: 22 at m = 5. Under a fixed load it
+        makes no difference to loads and paths; a load that follows the crack must overload all
+        of a batch and is the higher for larger ones.
+    tolerance : float
+        Relative residual of every equilibrium.
+    max_iterations : int
+        Of one solve.
+    max_solves : int, optional
+        The run ends there.
+    until : callable, optional
+        Called with the `Growth` before every batch, also within an avalanche; the run ends when
+        it returns true.
+    monitors : mapping from name to callable, optional
+        Further columns of the history.
+    checkpoint : path, optional
+        The run is saved there every `every` solves and at its end, and goes on from there if the
+        file exists: results are the same to the last bit as without interruption.
+    every : int
+        Solves between two checkpoints.
+
+    Returns
+    -------
+    Growth
+
+    Raises
+    ------
+    SceneError
+        If scene, toughness and criterion do not fit, or the checkpoint is another run's.
+    NegativeCurvatureError, ConvergenceError
+        If the damaged body has no stable equilibrium that could be found.
+
+    Notes
+    -----
+    A part that comes loose is set aside (`Growth.loose`); if a load acts on it, the run ends and
+    says so in `Growth.reason`.
+
+    Examples
+    --------
+    >>> from solver import Crack, ElasticTensor, Scene, Support, rectangle
+    >>> held = Support.where(lambda x, y: abs(y) > 6, displacement=lambda x, y: 1e-3 * y[:, None]
+    ...     * [0, 1])
+    >>> scene = Scene(rectangle(24, 16), 1.0, ElasticTensor.isotropic(1.0, 0.2), m=3,
+    ...     supports=[held], cracks=[Crack((-13, 0), (0, 0))])
+    >>> run = grow(scene, 1e-6, until=lambda run: run.advance > 3)
+    >>> bool(abs(run.tip[1]) < 1e-9), bool(abs(run.history.imbalance).max() < 1e-8)
+    (True, True)
+    """
+    programme = Programme() if programme is None else programme
+    if until is None and max_solves is None and programme.targets[-1] == np.inf:
+        raise SceneError("the run has no end: give programme.stop, until or max_solves")
+    run = Growth(
+        scene,
+        toughness,
+        programme,
+        tuple(no_fail),
+        tension_only,
+        criterion,
+        batch,
+        tolerance,
+        max_iterations,
+        monitors or {},
+    )
+    mark = state_file.fingerprint(run)
+    if checkpoint is None or not state_file.load(run, checkpoint, mark):
+        run.begin()
+    saved = len(run.solves)
+    while not run.reason:
+        # What was asked from outside may be asked otherwise when the run goes on.
+        if until is not None and until(run):
+            asked = "as asked (until)"
+        elif max_solves is not None and len(run.solves) >= max_solves:
+            asked = f"{max_solves} solves are done"
+        else:
+            asked = ""
+        if checkpoint is not None and (asked or len(run.solves) >= saved + every):
+            saved = len(run.solves)
+            state_file.save(run, checkpoint, mark)
+        if asked:
+            run.reason = asked
+            if not run.resting:
+                run.record()
+            return run
+        try:
+            run.proceed()
+        except MechanismError as error:
+            run.reason = str(error)
+    if checkpoint is not None:
+        state_file.save(run, checkpoint, mark)
+    return run

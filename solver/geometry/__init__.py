@@ -1,0 +1,1 @@
+"""Bodies: regions, their particles, their outline, and every question of place."""

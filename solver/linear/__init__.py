@@ -1,0 +1,1 @@
+"""Krylov methods and the two-level preconditioner, for every analysis."""

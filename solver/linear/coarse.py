@@ -1,0 +1,290 @@
+"""The coarse space: bilinear hats on a coarse grid, one for each side of a crack.
+
+Hats reach across cracks, and a correction that ties both faces together is worthless there. So a
+hat whose support is cut into separate pieces (by whatever bonds are broken: straight or curved
+cracks, damage) becomes one hat a piece.
+
+The Galerkin matrix Pᵀ K P is found by probing: hats further apart than their supports plus two
+horizons do not feel each other, so that one product with the fine operator serves a whole colour
+of them. Some hundred products, whatever the size of the body, and the fine matrix never exists.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+
+from ..operators import kernels
+from ..operators.bond_operator import BondOperator
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+# Hats a node at most; a support in more pieces than this is rubble.
+_PIECES = 4
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """Compressed rows in the form that the kernel reads."""
+
+    pointer: NDArray[np.uint64]
+    index: NDArray[np.uint64]
+    weight: Array
+
+    @classmethod
+    def of(cls, matrix: sparse.csr_array) -> _Rows:
+        return cls(matrix.indptr.astype(np.uint64), matrix.indices.astype(np.uint64), matrix.data)
+
+    def __call__(
+        self, values: Array, rows: NDArray[np.uint64] | None = None, out: Array | None = None
+    ) -> Array:
+        """The matrix times each component; only some rows, into `out`, if those are given."""
+        count = len(self.pointer) - 1
+        rows = np.arange(count, dtype=np.uint64) if rows is None else rows
+        out = np.empty((values.shape[0], count)) if out is None else out
+        kernels.weighted_rows(rows, self.pointer, self.index, self.weight, values, out)
+        return out
+
+
+class Hats:
+    """Bilinear hats over the active particles of an operator.
+
+    Parameters
+    ----------
+    operator : BondOperator
+    cells : int
+        Distance of the coarse nodes in cells of the lattice.
+
+    Attributes
+    ----------
+    count : int
+        Number of hats, split ones counted for each piece.
+    split : int
+        Nodes whose support is cut.
+    node, piece : ndarray of int, shape (count,)
+        Coarse node of each hat, row by row `width` to a row, and the piece of its support.
+    """
+
+    def __init__(self, operator: BondOperator, cells: int) -> None:
+        self.operator, self.cells = operator, int(cells)
+        lattice = operator.bonds.lattice
+        rows, columns = (axis[operator.active] for axis in lattice.cells)
+        h, count = self.cells, len(rows)
+        row, column, fy, fx = rows // h, columns // h, (rows % h) / h, (columns % h) / h
+        self.width = lattice.shape[1] // h + 2
+        here = row * self.width + column
+        node = np.stack([here, here + 1, here + self.width, here + self.width + 1], axis=1)
+        weight = np.stack([(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy], axis=1)
+        piece = self._pieces(node, weight)
+        self.split = len(np.unique(node[piece > 0]))
+        used = (weight > 0) & (piece < _PIECES)
+        self._pieces_most = int(piece[used].max(initial=0)) + 1
+        key = node[used] * _PIECES + piece[used]
+        keys, hat = np.unique(key, return_inverse=True)
+        self.count = len(keys)
+        particle = np.repeat(np.arange(count), 4).reshape(count, 4)[used]
+        prolongation = sparse.csr_array((weight[used], (particle, hat)), shape=(count, self.count))
+        self.prolongation = prolongation
+        self.prolong = _Rows.of(prolongation)
+        self.restrict = _Rows.of(prolongation.T.tocsr())
+        self.node, self.piece = keys // _PIECES, keys % _PIECES
+
+    def _pieces(self, node: Indices, weight: Array) -> Indices:
+        """Piece of the hat's support that each (particle, hat) pair belongs to, like `node`."""
+        operator = self.operator
+        bonds, lattice = operator.bonds, operator.bonds.lattice
+        piece = np.zeros(node.shape, dtype=np.int64)
+        broken = np.zeros(lattice.count, dtype=bool)
+        broken[bonds.special] = ((bonds.factors == 0) & bonds.exist(bonds.special)).any(axis=0)
+        broken = broken[operator.active]
+        if not broken.any():
+            return piece
+        suspects = np.unique(node[broken][weight[broken] > 0])
+        # Pieces are what the nearest intact bonds connect.
+        number = np.full(lattice.shape, -1, dtype=np.int64)
+        rows, columns = (axis[operator.active] for axis in lattice.cells)
+        number[rows, columns] = np.arange(len(rows))
+        links = []
+        for o in np.argsort(bonds.family.length, kind="stable")[:8]:
+            dx, dy = bonds.family.offsets[o]
+            neighbour = number[rows + dy, columns + dx]
+            links.append(np.where(bonds.factor(int(o))[operator.active] != 0, neighbour, -1))
+        slots = np.argsort(node.ravel(), kind="stable")
+        sorted_nodes = node.ravel()[slots]
+        first = np.searchsorted(sorted_nodes, suspects)
+        last = np.searchsorted(sorted_nodes, suspects, side="right")
+        flat_piece, flat_weight = piece.ravel(), weight.ravel()
+        for a, b in zip(first, last, strict=True):
+            mine = slots[a:b]
+            mine = mine[flat_weight[mine] > 0]
+            particles = mine // 4
+            order = np.argsort(particles)
+            members = particles[order]
+            starts, ends = [], []
+            for link in links:
+                neighbour = link[members]
+                where = np.minimum(np.searchsorted(members, neighbour), len(members) - 1)
+                linked = members[where] == neighbour
+                starts.append(np.nonzero(linked)[0])
+                ends.append(where[linked])
+            i, j = np.concatenate(starts), np.concatenate(ends)
+            size = len(members)
+            graph = sparse.coo_array((np.ones(len(i), np.int8), (i, j)), shape=(size, size))
+            _, labels = connected_components(graph, directed=False)
+            # The heaviest piece first: pieces beyond the fourth get no hat of their own.
+            weights = np.bincount(labels, flat_weight[mine[order]])
+            rank = np.empty(len(weights), dtype=np.int64)
+            rank[np.argsort(-weights, kind="stable")] = np.arange(len(weights))
+            flat_piece[mine[order]] = rank[labels]
+        return piece
+
+    def galerkin(
+        self, known: tuple[Hats, sparse.csc_array] | None = None, changed: Indices | None = None
+    ) -> sparse.csc_array:
+        """Pᵀ K P, component by component.
+
+        Parameters
+        ----------
+        known : (Hats, csc_array), optional
+            Hats and matrix of the same body before some bonds changed.
+        changed : ndarray of int, optional
+            Active particles (positions) whose bonds have changed since. Only hats that feel
+            them are probed again, with products on a window around them.
+
+        Returns
+        -------
+        csc_array, shape (components·count, components·count)
+        """
+        operator, h, c = self.operator, self.cells, self.operator.components
+        reach = operator.bonds.family.reach
+        # Offsets of nodes whose hats can meet through a bond, and the period that keeps the
+        # hats of one colour apart.
+        window = (2 * (h - 1) + reach) // h
+        period = 2 * window + 1
+        row, column = self.node // self.width, self.node % self.width
+        lookup = np.full(
+            (self._pieces_most, row.max() + 2 * period + 1, column.max() + 2 * period + 1), -1
+        )
+        lookup[self.piece, row + period, column + period] = np.arange(self.count)
+        stale = np.ones(self.count, dtype=bool) if known is None else self._stale(changed)
+        if known is not None and not stale.any():
+            return known[1]
+        probe = _Probe(self)
+        values, starts, ends = [], [], []
+        for colour in range(self._pieces_most * period**2):
+            piece, rest = divmod(colour, period**2)
+            colour_row, colour_column = divmod(rest, period)
+            lit = (self.piece == piece) & (row % period == colour_row)
+            lit &= (column % period == colour_column) & stale
+            if not lit.any():
+                continue
+            up = (colour_row - row + window) % period - window
+            right = (colour_column - column + window) % period - window
+            source = lookup[piece, row + up + period, column + right + period]
+            felt = np.nonzero((source >= 0) & stale[source])[0]
+            probe.light(lit)
+            for b in range(c):
+                answer = probe(b)[:, felt]
+                for a in range(c):
+                    values.append(answer[a])
+                    starts.append(a * self.count + felt)
+                    ends.append(b * self.count + source[felt])
+        size = c * self.count
+        data, i, j = np.concatenate(values), np.concatenate(starts), np.concatenate(ends)
+        if known is not None:
+            # Columns of stale hats were probed; their rows follow by symmetry, the rest stands.
+            mirrored = ~stale[i % self.count]
+            old_data, old_i, old_j = self._standing(*known, stale)
+            data = np.concatenate([data, data[mirrored], old_data])
+            i, j = (
+                np.concatenate([i, j[mirrored], old_i]),
+                np.concatenate([j, i[mirrored], old_j]),
+            )
+        return sparse.coo_array((data, (i, j)), shape=(size, size)).tocsc()
+
+    def surface(self) -> sparse.csr_array | None:
+        """Pᵀ S P of what the surface's nodes add, which reaches too far to be probed."""
+        if self.operator.surface is None:
+            return None
+        return self.operator.surface.condensed(self.operator.surface_basis(self.prolongation))
+
+    def _stale(self, changed: Indices | None) -> NDArray[np.bool_]:
+        """Hats whose image under K may differ because of particles with changed bonds."""
+        h, lattice = self.cells, self.operator.bonds.lattice
+        nodes = np.zeros((lattice.shape[0] // h + 2, self.width), dtype=bool)
+        if changed is not None and len(changed):
+            particles = self.operator.active[changed]
+            rows, columns = (axis[particles] for axis in lattice.cells)
+            far = h + self.operator.bonds.family.reach
+            for dr in range(-far, far + 1, h):
+                for dc in range(-far, far + 1, h):
+                    r = np.clip((rows + dr) // h, 0, nodes.shape[0] - 2)
+                    k = np.clip((columns + dc) // h, 0, nodes.shape[1] - 2)
+                    for one in (0, 1):
+                        nodes[r + one, k] = nodes[r + one, k + 1] = True
+        return nodes.ravel()[self.node]
+
+    def _standing(
+        self, before: Hats, matrix: sparse.csc_array, stale: NDArray[np.bool_]
+    ) -> tuple[Array, Indices, Indices]:
+        """Entries of the old matrix between hats that are not stale, renumbered."""
+        keys = self.node * _PIECES + self.piece
+        old_keys = before.node * _PIECES + before.piece
+        where = np.minimum(np.searchsorted(keys, old_keys), self.count - 1)
+        same = (keys[where] == old_keys) & ~stale[where]
+        renumber = np.where(same, where, -1)
+        entries = matrix.tocoo()
+        i, j = renumber[entries.row % before.count], renumber[entries.col % before.count]
+        kept = (i >= 0) & (j >= 0)
+        offset_i = entries.row // before.count * self.count
+        offset_j = entries.col // before.count * self.count
+        return entries.data[kept], (offset_i + i)[kept], (offset_j + j)[kept]
+
+
+class _Probe:
+    """Products with hats of one colour, on the part of the lattice that they reach."""
+
+    def __init__(self, hats: Hats) -> None:
+        self.hats, operator = hats, hats.operator
+        self.fine = np.zeros((operator.components, len(operator.active)))
+        self.image = np.zeros_like(self.fine)
+
+    def light(self, lit: NDArray[np.bool_]) -> None:
+        """Turn to other hats; their rows of windows do not overlap."""
+        hats, operator = self.hats, self.hats.operator
+        self.lit = lit
+        margin = hats.cells - 1 + operator.bonds.family.reach
+        row, column = np.divmod(hats.node[lit], hats.width)
+        # One window for all lit hats of a node row: short runs of particles cost the kernel more
+        # than the gaps between the hats do.
+        rows, group = np.unique(row, return_inverse=True)
+        low, high = np.full(len(rows), column.max()), np.zeros(len(rows), dtype=np.int64)
+        np.minimum.at(low, group, column)
+        np.maximum.at(high, group, column)
+        spread = np.array([-margin, -margin, margin, margin])
+        boxes = hats.cells * np.column_stack([rows, low, rows, high]) + spread
+        self.segments = operator.windows(boxes)
+        _, size, first = self.segments[:, :3].astype(np.int64).T
+        # Positions first, first + 1, … of every segment.
+        shift = np.repeat(first - np.concatenate([[0], np.cumsum(size)[:-1]]), size)
+        self.particles = (np.arange(size.sum()) + shift).astype(np.uint64)
+        # What other windows left must be neither read nor restricted.
+        operator.clear()
+        self.fine[:] = 0.0
+        self.image[:] = 0.0
+
+    def __call__(self, component: int) -> Array:
+        """Pᵀ K P e for the sum e of the lit hats in one component."""
+        hats = self.hats
+        unit = np.zeros((1, hats.count))
+        unit[0, self.lit] = 1.0
+        if component:
+            self.fine[component - 1, self.particles] = 0.0
+        hats.prolong(unit, self.particles, self.fine[component : component + 1])
+        hats.operator.product(self.fine, masked=True, segments=self.segments, out=self.image)
+        return hats.restrict(self.image)

@@ -1,0 +1,1 @@
+"""Solids and bonds: tensors, families, laws, calibrated moduli, and which of them are stable."""

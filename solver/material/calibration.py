@@ -1,0 +1,355 @@
+r"""Calibration: bond moduli whose sum over the family is the macroscopic tensor.
+
+For a homogeneous strain ε with no rotation a bond stretches by s = v_s·ε and shears by
+γ = v_γ·ε, v_s = (c², s², cs), v_γ = (−cs, cs, (c² − s²)/2) against (ε11, ε22, 2ε12) (Eqs. 52–54),
+so the energy per volume of a bulk particle makes the lattice an elastic solid of
+
+    C = ½ Σ α Λ |ξ| Δv (k_n v_s v_sᵀ + k_t v_γ v_γᵀ),        D = ½ Σ α Λ Δv k n nᵀ
+
+(conduction has no |ξ|, Eq. 112). Three calibrations choose the moduli:
+
+``continuum``
+    The paper's: the sum replaced by the integral over the horizon disc (Eqs. 58–70, 149–155,
+    163–167). On a lattice C and D then come out wrong by a few per cent, at any spacing.
+``lattice``
+    The same angular law, coefficients from the sums themselves: exact.
+``positive``
+    Non-negative moduli with exact sums, nearest (in relative least squares) to the smooth law;
+    in elasticity subject also to Σ α Λ |ξ| k_t v_γ = 0, which keeps rotation and homogeneous
+    strain apart.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import CalibrationError
+from .family import Family
+from .laws import AngularLaw, UniformShear, default_law
+from .positive import closest, feasible
+from .tensors import ConductivityTensor, ElasticTensor, Material
+
+Array = NDArray[np.float64]
+Calibration = Literal["continuum", "lattice", "positive"]
+
+_PAIRS3 = ([0, 1, 0, 2, 0, 1], [0, 1, 1, 2, 2, 2])
+_PAIRS2 = ([0, 1, 0], [0, 1, 1])
+# Largest relative error of the moments with which a law still counts as exact.
+_EXACT = 1e-10
+# A shear modulus below this share of the largest axial one is rounding.
+_NO_SHEAR = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticModuli:
+    """k_n and k_t of every bond of the family, shapes (n,), N/m⁵ per unit thickness."""
+
+    normal: Array
+    shear: Array
+
+    @property
+    def has_shear(self) -> bool:
+        """Whether any bond resists shear; if none does, rotations have no stiffness."""
+        return bool(np.any(self.shear != 0.0))
+
+    @property
+    def non_negative(self) -> bool:
+        """Whether no bond has a negative modulus."""
+        return bool(self.normal.min() >= 0 and self.shear.min() >= 0)
+
+
+@dataclass(frozen=True, eq=False)
+class ConductiveModuli:
+    """k of every bond of the family, shape (n,), W/(m K) per m² and unit thickness."""
+
+    conductivity: Array
+
+    @property
+    def non_negative(self) -> bool:
+        """Whether no bond has a negative modulus."""
+        return bool(self.conductivity.min() >= 0)
+
+
+Moduli = ElasticModuli | ConductiveModuli
+
+
+def stretch_rows(psi: Array) -> tuple[Array, Array]:
+    """v_s and v_γ at angles ψ, each of shape (3, n)."""
+    c, s = np.cos(psi), np.sin(psi)
+    return np.array([c * c, s * s, c * s]), np.array([-c * s, c * s, 0.5 * (c * c - s * s)])
+
+
+def elastic_moments(psi: Array) -> tuple[Array, Array]:
+    """Products v vᵀ in the order 11, 22, 12, 66, 16, 26 for k_n and for k_t, each (6, n)."""
+    stretch, shear = stretch_rows(psi)
+    a, b = _PAIRS3
+    return stretch[a] * stretch[b], shear[a] * shear[b]
+
+
+def conductive_moments(psi: Array) -> Array:
+    """Products n nᵀ in the order 11, 22, 12, shape (3, n)."""
+    n = np.array([np.cos(psi), np.sin(psi)])
+    a, b = _PAIRS2
+    return n[a] * n[b]
+
+
+def bond_weights(family: Family, material: Material) -> Array:
+    """½ α Λ |ξ| Δv (elasticity) or ½ α Λ Δv (conduction) of each bond, shape (n,)."""
+    weight = 0.5 * family.weight * family.cell
+    return weight * family.length if isinstance(material, ElasticTensor) else weight
+
+
+def effective_tensor(family: Family, moduli: Moduli) -> Array:
+    """The tensor that the lattice sums make: C with rotations condensed (3×3), or D (2×2)."""
+    if isinstance(moduli, ConductiveModuli):
+        weight = 0.5 * family.weight * family.cell * moduli.conductivity
+        return np.einsum("o,oi,oj->ij", weight, family.normal, family.normal)
+    weight = 0.5 * family.weight * family.cell * family.length
+    stretch, shear = stretch_rows(family.angle)
+    axial, transverse = weight * moduli.normal, weight * moduli.shear
+    tensor = (axial * stretch) @ stretch.T + (transverse * shear) @ shear.T
+    stiffness = transverse.sum()
+    coupling = shear @ transverse
+    if abs(stiffness) > 0 and np.abs(coupling).max() > 0:
+        tensor = tensor - np.outer(coupling, coupling) / stiffness
+    return tensor
+
+
+def calibrate(
+    family: Family,
+    material: Material,
+    calibration: Calibration = "lattice",
+    law: AngularLaw | None = None,
+    explain: bool = True,
+) -> Moduli:
+    """Bond moduli of `material` on `family`.
+
+    Parameters
+    ----------
+    family : Family
+    material : ElasticTensor or ConductivityTensor
+    calibration : {"continuum", "lattice", "positive"}
+    law : TwoHarmonic, UniformShear, Cosine or Fourfold, optional
+        By default Cosine in conduction and the paper's two-harmonic law in elasticity, but for
+        ``lattice`` UniformShear where the two-harmonic k_t would take both signs (its rotation
+        block could then be singular).
+    explain : bool
+        Whether the error of ``positive`` shall look for what would do instead, which takes some
+        tenths of a second.
+
+    Returns
+    -------
+    ElasticModuli or ConductiveModuli
+
+    Raises
+    ------
+    CalibrationError
+        If the law has no member with the tensor's moments, or (``positive``) no non-negative
+        moduli exist on this family; the message says which m would do, or that none will, and
+        what to use instead.
+    """
+    if calibration not in get_args(Calibration):
+        raise ValueError(
+            f"unknown calibration {calibration!r}; known: {', '.join(get_args(Calibration))}"
+        )
+    chosen, law = law, default_law(material) if law is None else law
+    if isinstance(material, ElasticTensor):
+        moduli = _elastic(family, material, calibration, law, explain)
+        mixed = moduli.shear.min() < 0 < moduli.shear.max()
+        if chosen is None and calibration == "lattice" and mixed:
+            moduli = _elastic(family, material, calibration, UniformShear(), explain)
+        return moduli
+    return _conductive(family, material, calibration, law, explain)
+
+
+def _solve(system: Array, target: Array, what: str) -> Array:
+    """Smallest coefficients with the wanted moments."""
+    scale = np.abs(system).max(axis=0)
+    scale[scale == 0] = 1.0
+    coefficients: Array = np.linalg.lstsq(system / scale, target, rcond=1e-12)[0] / scale
+    error = np.abs(system @ coefficients - target).max()
+    if error > _EXACT * np.abs(target).max():
+        raise CalibrationError(
+            f"no {what} has the moments of this tensor (relative error of the best fit "
+            f"{error / np.abs(target).max():.1e}): the law lacks its symmetry, or "
+            f"the family has too few bond directions (a larger m has more)"
+        )
+    return coefficients
+
+
+def _circle(law: AngularLaw) -> Array:
+    """Angles whose equal-weight mean is exact for the law times two direction pairs."""
+    count = 4 * (law.degree + 8)
+    return np.linspace(0.0, 2 * np.pi, count, endpoint=False)
+
+
+def _elastic(
+    family: Family,
+    material: ElasticTensor,
+    calibration: Calibration,
+    law: AngularLaw,
+    explain: bool,
+) -> ElasticModuli:
+    target = material.voigt[_PAIRS3]
+    psi = family.angle
+    weight = bond_weights(family, material)
+    name = type(law).__name__
+    if calibration == "lattice":
+        basis_n, basis_t = law.elastic(psi, material)
+        moments_n, moments_t = elastic_moments(psi)
+        system = (weight * moments_n) @ basis_n.T + (weight * moments_t) @ basis_t.T
+    else:
+        circle = _circle(law)
+        basis_n, basis_t = law.elastic(circle, material)
+        moments_n, moments_t = elastic_moments(circle)
+        radial = 0.5 * family.horizon**3 * family.influence.moment(2)
+        mean = 2 * np.pi / len(circle)
+        system = radial * mean * (moments_n @ basis_n.T + moments_t @ basis_t.T)
+    try:
+        coefficients = _solve(system, target, f"{name} law ({calibration})")
+    except CalibrationError as error:
+        raise CalibrationError(f"{error}. {_instead(family, material, explain)}".rstrip()) from None
+    basis_n, basis_t = law.elastic(psi, material)
+    normal, shear = coefficients @ basis_n, coefficients @ basis_t
+    if calibration == "positive":
+        normal, shear = _positive_elastic(family, material, normal, shear, explain)
+    # Rounding must not give rotations a stiffness that no bond has (ν = 1/3 in plane stress).
+    tiny = _NO_SHEAR * np.abs(normal).max()
+    if np.abs(shear).max() <= tiny:
+        shear = np.zeros_like(shear)
+    return ElasticModuli(_mirrored(normal), _mirrored(shear))
+
+
+def _positive_elastic(
+    family: Family, material: ElasticTensor, normal: Array, shear: Array, explain: bool
+) -> tuple[Array, Array]:
+    c = material.voigt
+    difference = c[2, 2] - c[0, 1]
+    if difference < -1e-12 * np.abs(c).max():
+        raise CalibrationError(
+            f"no non-negative bond moduli exist for this solid at any m: their shear parts sum to "
+            f"4 (C66 − C12) = {4 * difference:.6g} < 0 (ν > 1/3 for an isotropic solid in plane "
+            f"stress). {_instead(family, material, explain)}"
+        )
+    half = family.size // 2
+    scale_n = np.maximum(np.abs(normal[:half]), 0.05 * np.abs(normal).max())
+    scale_t = np.maximum(np.abs(shear[:half]), 0.05 * np.abs(normal).max())
+    scale = np.concatenate([scale_n, scale_t])
+    moments, target = _positive_system(family, material)
+    wanted = np.concatenate([normal[:half], shear[:half]]) / scale
+    found = closest(moments * scale, target, np.maximum(wanted, 0.0))
+    if found is None:
+        raise CalibrationError(_no_positive(family, material, explain))
+    found = found * scale
+    return np.tile(found[:half], 2), np.tile(found[half:], 2)
+
+
+def _positive_system(family: Family, material: Material) -> tuple[Array, Array]:
+    """Moment rows over half the family (opposite bonds are equal) and their targets."""
+    half = family.size // 2
+    psi = family.angle[:half]
+    weight = 2 * bond_weights(family, material)[:half]
+    if isinstance(material, ConductivityTensor):
+        return weight * conductive_moments(psi), material.matrix[_PAIRS2]
+    moments_n, moments_t = elastic_moments(psi)
+    decoupled = weight * stretch_rows(psi)[1][1:]
+    rows = np.hstack([weight * moments_n, weight * moments_t])
+    rows = np.vstack([rows, np.hstack([np.zeros_like(decoupled), decoupled])])
+    return rows, np.concatenate([material.voigt[_PAIRS3], [0.0, 0.0]])
+
+
+def representable(family: Family, material: Material) -> bool:
+    """Whether non-negative moduli with the exact moments exist on this family."""
+    moments, target = _positive_system(family, material)
+    norms = np.linalg.norm(moments, axis=1)
+    norms[norms == 0] = 1.0
+    return feasible(moments / norms[:, None] * norms.max(), target / norms * norms.max())
+
+
+def representable_by_directions(material: Material, count: int = 360) -> bool:
+    """Whether non-negative moduli exist for bonds in `count` directions, as no lattice has.
+
+    If not, no family of any m has them, for the tensors that can be made grow with the
+    directions; half a degree between these decides but the last 1e-4 of that growth.
+    """
+    psi = np.pi * np.arange(count) / count
+    if isinstance(material, ConductivityTensor):
+        return feasible(conductive_moments(psi), material.matrix[_PAIRS2])
+    moments_n, moments_t = elastic_moments(psi)
+    decoupled = stretch_rows(psi)[1][1:]
+    rows = np.hstack([moments_n, moments_t])
+    rows = np.vstack([rows, np.hstack([np.zeros_like(decoupled), decoupled])])
+    return feasible(rows, np.concatenate([material.voigt[_PAIRS3], [0.0, 0.0]]))
+
+
+def _no_positive(family: Family, material: Material, explain: bool, largest: int = 14) -> str:
+    """Say which m would have non-negative moduli, or that none up to `largest` has, or none."""
+    here = f"no non-negative bond moduli represent this tensor at m = {family.m:g}"
+    if not explain:
+        return here
+    if not representable_by_directions(material):
+        return (
+            f"{here}, nor at any m ≤ {largest} or beyond: bonds in all directions together do not "
+            f"make it. {_instead(family, material, explain)}"
+        )
+    for m in range(int(family.m) + 1, largest + 1):
+        other = Family(m, family.spacing * family.m / m, family.area_rule, family.influence)
+        if representable(other, material):
+            instead = _instead(family, material, explain)
+            return f"{here}; they exist at m = {m}. Use that, or the following. {instead}"
+    return (
+        f"{here}, nor at any m ≤ {largest}, whose bonds have too few directions. "
+        f"{_instead(family, material, explain)}"
+    )
+
+
+def _instead(family: Family, material: Material, explain: bool) -> str:
+    # Stability judges moduli, so that it is imported where it is asked.
+    from .stability import remedy
+
+    return remedy(family, material) if explain else ""
+
+
+def _conductive(
+    family: Family,
+    material: ConductivityTensor,
+    calibration: Calibration,
+    law: AngularLaw,
+    explain: bool,
+) -> ConductiveModuli:
+    target = material.matrix[_PAIRS2]
+    psi = family.angle
+    weight = bond_weights(family, material)
+    name = type(law).__name__
+    if calibration == "lattice":
+        basis = law.conductive(psi, material, extended=True)
+        system = (weight * conductive_moments(psi)) @ basis.T
+    else:
+        basis = law.conductive(psi, material, extended=False)
+        circle = _circle(law)
+        radial = 0.5 * family.horizon**2 * family.influence.moment(1) * 2 * np.pi / len(circle)
+        on_circle = law.conductive(circle, material, extended=False)
+        system = radial * conductive_moments(circle) @ on_circle.T
+    try:
+        conductivity = _solve(system, target, f"{name} law ({calibration})") @ basis
+    except CalibrationError as error:
+        raise CalibrationError(f"{error}. {_instead(family, material, explain)}".rstrip()) from None
+    if calibration == "positive":
+        half = family.size // 2
+        scale = np.maximum(np.abs(conductivity[:half]), 1e-3 * np.abs(conductivity).max())
+        moments, target = _positive_system(family, material)
+        found = closest(moments * scale, target, np.maximum(conductivity[:half] / scale, 0.0))
+        if found is None:
+            raise CalibrationError(_no_positive(family, material, explain))
+        conductivity = np.tile(found * scale, 2)
+    return ConductiveModuli(_mirrored(conductivity))
+
+
+def _mirrored(values: Array) -> Array:
+    """Make opposite bonds equal to the last bit (their angles differ by π only in exact maths)."""
+    half = len(values) // 2
+    return np.tile(0.5 * (values[:half] + values[half:]), 2)

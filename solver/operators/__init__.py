@@ -1,0 +1,1 @@
+"""Stiffness of a body as products with fields, assembled where somebody needs the matrix."""

@@ -1,0 +1,423 @@
+"""Matrix-free bond operators: the stiffness of a body as products with fields.
+
+The operator acts on the *active* particles (those with a free unknown), component by component:
+a vector is ``x.reshape(components, active)``. Rotations enter as θ Δx, so that all unknowns and
+all entries carry the same units and no tolerance depends on them. Rows are densities, force (or
+heat) per unit volume.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse.linalg import LinearOperator
+
+from ..bonds.bonds import Bonds
+from ..material.calibration import ConductiveModuli, ElasticModuli, Moduli
+from . import kernels
+from .surface_stiffness import SurfaceStiffness, stiffness_of
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+# Kinds of particles as the kernels know them.
+_BULK, _TRUNCATED, _SPECIAL = 0, 1, 2
+# Own stiffness, relative to the bulk's, beyond which a particle is tied to the surface's nodes.
+STIFF = 2.0
+
+
+def offset_blocks(bonds: Bonds, moduli: Moduli) -> Array:
+    """Entries of the bond blocks of all offsets, shape (family size, 6, 3 or 1).
+
+    Elasticity: A11, A12, A22, t̂1, t̂2, c (rotation scaled by the spacing), the first three only
+    where no bond resists shear. Conduction: w k/|ξ|².
+    """
+    family = bonds.family
+    weight = family.weight * family.cell
+    if isinstance(moduli, ConductiveModuli):
+        return (weight * moduli.conductivity / family.length**2)[:, None]
+    n, t = family.normal, family.tangent
+    axial = weight * moduli.normal / family.length
+    transverse = weight * moduli.shear / family.length
+    block = [
+        axial * n[:, a] * n[:, b] + transverse * t[:, a] * t[:, b]
+        for a, b in ((0, 0), (0, 1), (1, 1))
+    ]
+    if not moduli.has_shear:
+        return np.column_stack(block)
+    cells = family.length / family.spacing
+    half = 0.5 * transverse * cells
+    return np.column_stack([*block, half * t[:, 0], half * t[:, 1], 0.5 * half * cells])
+
+
+class BondOperator(LinearOperator):
+    """Stiffness of the active particles of a body.
+
+    Parameters
+    ----------
+    bonds : Bonds
+    moduli : ElasticModuli or ConductiveModuli
+    fixed : ndarray of bool, shape (components, N)
+        Prescribed unknowns. Particles with all of them prescribed are not unknowns; single
+        prescribed components of the others are kept as identity rows.
+    """
+
+    def __init__(self, bonds: Bonds, moduli: Moduli, fixed: Mask) -> None:
+        self.bonds, self.moduli = bonds, moduli
+        self.blocks: Array = offset_blocks(bonds, moduli)
+        self.components = {6: 3, 3: 2, 1: 1}[self.blocks.shape[1]]
+        if fixed.shape != (self.components, bonds.lattice.count):
+            raise ValueError(f"fixed must have shape {(self.components, bonds.lattice.count)}")
+        #: Numbers of the active particles.
+        self.active: NDArray[np.int64] = np.nonzero(~fixed.all(axis=0))[0]
+        count = len(self.active)
+        super().__init__(np.float64, (self.components * count, self.components * count))
+        partly = fixed[:, self.active]
+        #: Identity rows, shape (components, active), or None if there are none.
+        self.fixed: Mask | None = partly if partly.any() else None
+        self._grid = np.zeros((self.components, int(np.prod(bonds.lattice.shape))))
+        self._kernel = {
+            3: kernels.elastic_product,
+            2: kernels.central_product,
+            1: kernels.conductive_product,
+        }[self.components]
+        half = bonds.family.size // 2
+        row = bonds.lattice.shape[1]
+        dx, dy = bonds.family.offsets[:half].T
+        #: What the kernels read, see `solver.operators.kernels`.
+        self.steps = (dy * row + dx).astype(np.uint64)
+        self.half_blocks = np.ascontiguousarray(self.blocks[:half])
+        self.bulk = self._diagonal_sums(np.ones((bonds.family.size, 1)))[:, 0]
+        #: Runs of particles of one kind, as the kernels read them.
+        self.segments, self.diagonal = self._layout()
+        #: Stiffness of the bonds that end at the surface, if there are any.
+        self.surface: SurfaceStiffness | None = None
+        if bonds.ended is not None:
+            self.surface = stiffness_of(bonds.ended, bonds.family, moduli, self.components)
+            self._add_surface()
+
+    def _add_surface(self) -> None:
+        """Put the particles' part of the ended bonds into the diagonal blocks."""
+        surface = self.surface
+        assert surface is not None
+        position = np.full(self.bonds.lattice.count, -1)
+        position[self.active] = np.arange(len(self.active))
+        at = position[surface.particles]
+        #: Active particles with ended bonds, and which of the surface's particles they are.
+        self.at_surface: NDArray[np.int64] = at[at >= 0]
+        self._on_surface = np.nonzero(at >= 0)[0]
+        column = np.full(len(self.active), -1)
+        column[self.own] = np.arange(len(self.own))
+        self.diagonal[:, column[self.at_surface]] += surface.own[:, self._on_surface]
+
+    def add_at_surface(self, out: Array, values: Array) -> None:
+        """Add values of the surface's particles, (components, p), to a field of the active ones."""
+        out[:, self.at_surface] += values[:, self._on_surface]
+
+    def nodes_reaction(self, values: Array) -> Array:
+        """What the surface's nodes do to the active particles, both (components, active)."""
+        assert self.surface is not None
+        given = np.zeros((self.components, len(self.surface.particles)))
+        given[:, self._on_surface] = values[:, self.at_surface]
+        out = np.zeros_like(values)
+        self.add_at_surface(out, self.surface.reaction(given))
+        return out
+
+    def _layout(self) -> tuple[NDArray[np.uint64], Array]:
+        """Segments of the active particles and the diagonal blocks that differ from the bulk's."""
+        bonds, lattice = self.bonds, self.bonds.lattice
+        kind = np.full(lattice.count, _BULK, dtype=np.int64)
+        kind[bonds.short] = _TRUNCATED
+        kind[bonds.special] = _SPECIAL
+        rows, columns = (axis[self.active] for axis in lattice.cells)
+        kind = kind[self.active]
+        if self.fixed is not None:
+            # Their blocks differ for whoever inverts them.
+            kind[self.fixed.any(axis=0) & (kind == _BULK)] = _TRUNCATED
+        own = kind != _BULK
+        diagonal = np.empty((len(self.bulk), int(own.sum())))
+        truncated = self.active[kind == _TRUNCATED]
+        diagonal[:, kind[own] == _TRUNCATED] = self._diagonal_sums(
+            bonds.exist(truncated).astype(np.float64)
+        )
+        special = bonds.column[self.active]
+        diagonal[:, kind[own] == _SPECIAL] = self._diagonal_sums(
+            bonds.factors[:, special[kind == _SPECIAL]]
+        )
+        own_column = np.cumsum(own) - 1
+        # A new segment starts where the row, the kind or the neighbourhood along a row breaks;
+        # columns of `factors` run on within a row because they follow the lattice's order.
+        step = np.ones(len(rows), dtype=bool)
+        step[1:] = (
+            (rows[1:] != rows[:-1]) | (columns[1:] != columns[:-1] + 1) | (kind[1:] != kind[:-1])
+        )
+        first = np.nonzero(step)[0]
+        size = np.diff(np.append(first, len(rows)))
+        segments = np.column_stack(
+            [
+                rows[first] * lattice.shape[1] + columns[first],
+                size,
+                first,
+                kind[first],
+                np.maximum(own_column[first], 0),
+                np.maximum(special[first], 0),
+            ]
+        )
+        return np.ascontiguousarray(segments, dtype=np.uint64), diagonal
+
+    def _diagonal_sums(self, factors: Array) -> Array:
+        """Diagonal blocks for bond factors of shape (family size, n): (entries, n).
+
+        Order 11, 22 … as the kernels read it: 11, 12, 22, 1θ, 2θ, θθ.
+        """
+        return np.einsum("oe,on->en", self.blocks, factors)
+
+    # ---- products -----------------------------------------------------------------------
+
+    def product(
+        self,
+        values: Array,
+        masked: bool = False,
+        segments: NDArray[np.uint64] | None = None,
+        out: Array | None = None,
+    ) -> Array:
+        """K x for values of shape (components, active), in that shape.
+
+        With `masked`, prescribed components of the values and of the result count as zero
+        (instead of the identity rows of `matvec`). With `segments` (from `windows`,
+        after `clear`) only their particles are read and written in `out`, and the reaction of
+        the surface's nodes is left out.
+        """
+        segments = self.segments if segments is None else segments
+        values = np.ascontiguousarray(values, dtype=np.float64)
+        masked_values = values if self.fixed is None else np.where(self.fixed, 0.0, values)
+        # Only cells of active particles are ever written: the others stay zero.
+        kernels.scatter(segments, masked_values, self._grid)
+        out = self.apply_grid(self._grid, segments, out)
+        if self.surface is not None and segments is self.segments:
+            out += self.nodes_reaction(masked_values)
+        if self.fixed is not None:
+            out[self.fixed] = 0.0 if masked else self.identity_scale * values[self.fixed]
+        return out
+
+    def clear(self) -> None:
+        """Forget the last field: needed before products on a part of the body."""
+        self._grid.fill(0.0)
+
+    def windows(self, boxes: NDArray[np.int64]) -> NDArray[np.uint64]:
+        """The parts of the segments within disjoint boxes of the padded grid.
+
+        Parameters
+        ----------
+        boxes : ndarray of int, shape (n, 4)
+            First row, first column, last row, last column of each, ends included.
+        """
+        width = self.bonds.lattice.shape[1]
+        segments = self.segments.astype(np.int64)
+        # Segments follow the lattice's order, row by row.
+        row, column = segments[:, 0] // width, segments[:, 0] % width
+        first = np.searchsorted(row, boxes[:, 0])
+        last = np.searchsorted(row, boxes[:, 2], side="right")
+        count = last - first
+        box = np.repeat(np.arange(len(boxes)), count)
+        number = np.arange(count.sum()) + np.repeat(first - (np.cumsum(count) - count), count)
+        column, segments = column[number], segments[number]
+        start = np.maximum(column, boxes[box, 1]) - column
+        stop = np.minimum(column + segments[:, 1], boxes[box, 3] + 1) - column
+        kept = stop > start
+        segments += start[:, None] * np.array([1, 0, 1, 0, 1, 1])
+        segments[:, 1] = stop - start
+        return np.ascontiguousarray(segments[kept], dtype=np.uint64)
+
+    def apply_grid(
+        self, grid: Array, segments: NDArray[np.uint64] | None = None, out: Array | None = None
+    ) -> Array:
+        """Rows of the active particles for a field on the padded grid, (components, active)."""
+        if out is None:
+            out = np.empty((self.components, len(self.active)))
+        self._kernel(
+            grid,
+            self.segments if segments is None else segments,
+            self.steps,
+            self.half_blocks,
+            self.bulk,
+            self.diagonal,
+            self.bonds.factors,
+            out,
+        )
+        return out
+
+    def _matvec(self, x: Array) -> Array:
+        return self.product(np.asarray(x).reshape(self.components, -1)).ravel()
+
+    def _adjoint(self) -> BondOperator:
+        return self
+
+    def coupling(self, prescribed: Array) -> Array:
+        """K_fp u_p: rows of the active particles for prescribed values of shape (components, N)."""
+        grid = np.zeros_like(self._grid)
+        rows, columns = self.bonds.lattice.cells
+        # Parts set aside hold NaN and no bonds.
+        grid[:, rows * self.bonds.lattice.shape[1] + columns] = np.nan_to_num(prescribed)
+        out = self.apply_grid(grid)
+        if self.surface is not None:
+            given = np.nan_to_num(prescribed[:, self.surface.particles])
+            self.add_at_surface(out, self.surface.reaction(given))
+        if self.fixed is not None:
+            out[self.fixed] = 0.0
+        return out
+
+    def with_moduli(self, moduli: Moduli) -> BondOperator:
+        """The operator of the same bonds and supports with other moduli."""
+        fixed = np.ones((self.components, self.bonds.lattice.count), dtype=bool)
+        fixed[:, self.active] = False if self.fixed is None else self.fixed
+        return BondOperator(self.bonds, moduli, fixed)
+
+    def companion(self) -> BondOperator:
+        """The same body with every negative modulus turned positive.
+
+        Its condensed symbol is equivalent to that of the indefinite one, wave by wave, so that a
+        preconditioner built on it takes as many iterations on any lattice; and the two have the
+        same motions that strain no bond.
+        """
+        if not isinstance(self.moduli, ElasticModuli):
+            return self
+        positive = ElasticModuli(np.abs(self.moduli.normal), np.abs(self.moduli.shear))
+        return self.with_moduli(positive)
+
+    def surface_basis(self, basis: sparse.csr_array | None = None) -> sparse.csr_array:
+        """Values of the surface's particles for each unknown, or each column of `basis`.
+
+        `basis` gives one component of the active particles, shape (active, columns), and serves
+        all components alike.
+        """
+        assert self.surface is not None
+        size = (len(self.surface.particles), len(self.active))
+        pick = sparse.csr_array(
+            (np.ones(len(self.at_surface)), (self._on_surface, self.at_surface)), shape=size
+        )
+        parts = []
+        for component in range(self.components):
+            part = pick
+            if self.fixed is not None:
+                part = part @ sparse.diags_array((~self.fixed[component]).astype(np.float64))
+            parts.append(part if basis is None else part @ basis)
+        return sparse.csr_array(sparse.block_diag(parts, format="csr"))
+
+    # ---- structure ----------------------------------------------------------------------
+
+    @property
+    def identity_scale(self) -> float:
+        """Diagonal entry of the identity rows: the size of the bulk's."""
+        return float(np.abs(self.bulk).max())
+
+    @cached_property
+    def block_diagonal(self) -> Array:
+        """Diagonal blocks, shape (active, components, components)."""
+        blocks = np.tile(self.bulk_block, (len(self.active), 1, 1))
+        blocks[self.own] = self.own_blocks
+        return blocks
+
+    @property
+    def bulk_block(self) -> Array:
+        """Diagonal block of a bulk particle, shape (components, components)."""
+        return self._as_blocks(self.bulk[:, None])[0]
+
+    @cached_property
+    def own(self) -> NDArray[np.int64]:
+        """Positions among the active particles of those with a diagonal block of their own."""
+        kinds, sizes = self.segments[:, [3, 1]].astype(np.int64).T
+        return np.nonzero(np.repeat(kinds, sizes) != _BULK)[0]
+
+    @property
+    def own_blocks(self) -> Array:
+        """Their diagonal blocks, shape (len(own), components, components)."""
+        blocks = self._as_blocks(self.diagonal)
+        if self.surface is not None:
+            self._relieve(blocks)
+        if self.fixed is not None:
+            where, component = np.nonzero(self.fixed.T[self.own])
+            blocks[where, component, :] = blocks[where, :, component] = 0.0
+            blocks[where, component, component] = self.identity_scale
+        return blocks
+
+    def _relieve(self, blocks: Array) -> None:
+        """Let the surface's nodes give way to the particles that bonds tie to them stiffly.
+
+        Exact for those; for the others what is left out is small and makes the block stiffer.
+        """
+        assert self.surface is not None
+        own = np.full(len(self.active), -1)
+        own[self.own] = np.arange(len(self.own))
+        at = own[self.at_surface]
+        stiff = np.abs(np.einsum("pii->p", blocks[at])) > STIFF * np.abs(np.trace(self.bulk_block))
+        blocks[at[stiff]] += self.surface.relief(self._on_surface[stiff])
+
+    def _as_blocks(self, entries: Array) -> Array:
+        c = self.components
+        blocks = np.empty((entries.shape[1], c, c))
+        if c == 1:
+            blocks[:, 0, 0] = entries[0]
+            return blocks
+        for k, (a, b) in enumerate([(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)]):
+            if b < c:
+                blocks[:, a, b] = blocks[:, b, a] = entries[k]
+        return blocks
+
+    @property
+    def directed_bonds(self) -> int:
+        """Bonds that one product visits, each from both ends, missing and cut ones included."""
+        return len(self.active) * self.bonds.family.size
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of what a product reads besides the fields."""
+        arrays = (self.segments, self.steps, self.half_blocks, self.bulk, self.diagonal)
+        surface = 0 if self.surface is None else self.surface.nbytes
+        return sum(a.nbytes for a in arrays) + self.bonds.nbytes + surface
+
+    def to_csr(self) -> sparse.csr_array:
+        """The same operator as a sparse matrix, for small checks and factorisations."""
+        bonds, lattice, c = self.bonds, self.bonds.lattice, self.components
+        count = len(self.active)
+        number = np.full(lattice.shape, -1, dtype=np.int64)
+        rows, columns = (axis[self.active] for axis in lattice.cells)
+        number[rows, columns] = np.arange(count)
+        values: list[Array] = []
+        ends: list[NDArray[np.int32]] = []
+        starts: list[NDArray[np.int32]] = []
+        layout = {1: [[0]], 2: [[0, 1], [1, 2]], 3: [[0, 1, 3], [1, 2, 4], [3, 4, 5]]}[c]
+        for o, (dx, dy) in enumerate(bonds.family.offsets):
+            neighbour = number[rows + dy, columns + dx]
+            here = np.nonzero(neighbour >= 0)[0]
+            factor = bonds.factor(o)[self.active[here]]
+            for a in range(c):
+                for b in range(c):
+                    # K_pq = [[−A, t̂], [−t̂ᵀ, c]]
+                    sign = 1.0 if b == 2 else -1.0
+                    values.append(sign * factor * self.blocks[o, layout[a][b]])
+                    starts.append((a * count + here).astype(np.int32))
+                    ends.append((b * count + neighbour[here]).astype(np.int32))
+        # As the kernels have them: the nodes' part follows as a whole.
+        diagonal = np.tile(self.bulk_block, (count, 1, 1))
+        diagonal[self.own] = self._as_blocks(self.diagonal)
+        for a in range(c):
+            for b in range(c):
+                values.append(diagonal[:, a, b])
+                starts.append((a * count + np.arange(count)).astype(np.int32))
+                ends.append((b * count + np.arange(count)).astype(np.int32))
+        matrix = sparse.coo_array(
+            (np.concatenate(values), (np.concatenate(starts), np.concatenate(ends))),
+            shape=self.shape,
+        ).tocsr()
+        if self.surface is not None:
+            matrix = sparse.csr_array(matrix + self.surface.condensed(self.surface_basis()))
+        if self.fixed is not None:
+            free = sparse.diags_array((~self.fixed).ravel().astype(np.float64))
+            identity = sparse.diags_array(self.fixed.ravel() * self.identity_scale)
+            matrix = (free @ matrix @ free + identity).tocsr()
+        matrix.eliminate_zeros()
+        return matrix

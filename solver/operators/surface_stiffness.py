@@ -1,0 +1,332 @@
+"""Stiffness of the bonds that end at the surface, with the surface's nodes condensed out.
+
+Energies and why they are what they are: `solver.bonds.ended`; the membrane along the edge: `skin`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse.linalg import SuperLU, splu
+
+from ..bonds.ended import SHORTEST, EndedBonds
+from ..material.calibration import ConductiveModuli, Moduli
+from ..material.family import Family
+from .skin import thickness
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+# Ratio of pivots below which the nodes' stiffness counts as singular.
+_SINGULAR = 1e-14
+# Order of the entries of diagonal blocks, as the operator has them.
+_ENTRIES = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
+# Particles whose columns are solved for at once.
+_CHUNK = 200
+
+
+def stiffness_of(
+    ended: EndedBonds, family: Family, moduli: Moduli, components: int
+) -> SurfaceStiffness:
+    """Stiffness of some bonds; made once, however many other bonds break."""
+    known = ended.__dict__.get("_known")
+    if known is None or known[0] is not moduli:
+        known = moduli, SurfaceStiffness(ended, family, moduli, components)
+        # The dataclass is frozen for everybody else.
+        ended.__dict__["_known"] = known
+    stiffness: SurfaceStiffness = known[1]
+    return stiffness
+
+
+class SurfaceStiffness:
+    """Stiffness of the ended bonds, the nodes' displacements condensed out.
+
+    Vectors over particles or nodes are component by component, as the operator's.
+
+    Parameters
+    ----------
+    ended : EndedBonds
+    family : Family
+    moduli : ElasticModuli or ConductiveModuli
+    components : int
+
+    Attributes
+    ----------
+    particles : ndarray of int, shape (p,)
+        Particles with ended bonds.
+    nodes : ndarray of int, shape (s,)
+        Nodes of the outline that they end between.
+    """
+
+    def __init__(self, ended: EndedBonds, family: Family, moduli: Moduli, components: int) -> None:
+        self.ended, self.components = ended, components
+        self.particles, here = np.unique(ended.particle, return_inverse=True)
+        ends = ended.outline.edges[ended.edge]
+        self.nodes = np.unique(ends)
+        count = len(self.particles), len(self.nodes)
+        number = np.full(len(ended.outline.nodes), -1)
+        number[self.nodes] = np.arange(count[1])
+        length = ended.length
+        rule = _Strains(family, moduli, components, ended.offset, length)
+        whole = family.length[ended.offset]
+        particle = rule.rows(-1.0, 0.5 * whole)
+        strain_p = _place(particle, [(here, np.ones_like(length))], count[0])
+        surface = rule.rows(1.0, length - 0.5 * whole)
+        strain_s = _place(surface, _between(number[ends], ended.position), count[1])
+        self._ends = particle, surface
+        scaled = sparse.diags_array(rule.weight.ravel()) @ strain_s
+        #: Diagonal entries of the particles in the operator's order, shape (entries, p).
+        self.own: Array = np.array(
+            [
+                np.bincount(
+                    here,
+                    (rule.weight * particle[:, a] * particle[:, b]).sum(axis=0),
+                    minlength=count[0],
+                )
+                for a, b in _ENTRIES
+                if b < components
+            ]
+        )
+        #: K_sp, shape (components·s, components·p).
+        self.coupling: sparse.csr_array = sparse.csr_array(scaled.T @ strain_p)
+        #: K_ps.
+        self.transposed: sparse.csr_array = sparse.csr_array(self.coupling.T)
+        matrix = sparse.csc_array(strain_s.T @ scaled)
+        chords = ended.chords
+        if chords is not None and len(chords.offset):
+            rule = _Strains(family, moduli, components, chords.offset, chords.length)
+            strain = sparse.csr_array((rule.weight.size, components * count[1]))
+            for end, sign in enumerate((-1.0, 1.0)):
+                ends = number[ended.outline.edges[chords.edge[:, end]]]
+                rows = rule.rows(sign, chords.arm[:, end])
+                strain = strain + _place(rows, _between(ends, chords.position[:, end]), count[1])
+            scaled = sparse.diags_array(rule.weight.ravel()) @ strain
+            matrix = matrix + sparse.csc_array(strain.T @ scaled)
+        skin = self._skin(family, moduli, number)
+        #: K_ss.
+        self.matrix: sparse.csc_array = matrix + skin(False)
+        self._factors = self._factorise(number[ended.outline.edges])
+        if moduli.non_negative and self._factors.U.diagonal().min(initial=1.0) < 0.0:
+            # Where few bonds hold a node, what is too much of the lattice must not soften it.
+            self.matrix = matrix + skin(True)
+            self._factors = self._factorise(number[ended.outline.edges])
+
+    def _skin(
+        self, family: Family, moduli: Moduli, number: Indices
+    ) -> Callable[[bool], sparse.csc_array]:
+        """The membrane that makes up for strips of the lattice along the edge (`skin`).
+
+        A function of whether only what stiffens is wanted.
+        """
+        outline, c, count = self.ended.outline, self.components, len(self.nodes)
+        ends = number[outline.edges]
+        edges = np.nonzero((outline.face == 0) & (ends >= 0).all(axis=1))[0]
+        if not len(edges):
+            return lambda _: sparse.csc_array((c * count, c * count))
+        stiffness = thickness(outline, family, moduli, edges) / family.cell
+        length = outline.length[edges]
+        along = (outline.nodes[outline.edges[edges, 1]] - outline.nodes[outline.edges[edges, 0]]).T
+        along = along / length if c > 1 else np.ones((1, len(edges)))
+        rows = np.zeros((1, c, len(edges)))
+        rows[0, : len(along)] = along / length
+        one = np.ones(len(edges))
+        strain = _place(rows, [(ends[edges, 1], one), (ends[edges, 0], -one)], count)
+
+        def membrane(stiffening: bool) -> sparse.csc_array:
+            kept = np.maximum(stiffness, 0.0) if stiffening else stiffness
+            return sparse.csc_array(strain.T @ sparse.diags_array(kept * length) @ strain)
+
+        return membrane
+
+    def _factorise(self, edges: Indices) -> SuperLU:
+        """Factors of K_ss. `edges` joins all nodes of the outline, −1 for those without bonds."""
+        options = {
+            "permc_spec": "MMD_AT_PLUS_A",
+            "diag_pivot_thresh": 0.0,
+            "options": {"SymmetricMode": True},
+        }
+        try:
+            factors = splu(self.matrix, **options)
+            pivots = np.abs(factors.U.diagonal())
+            if pivots.min() > _SINGULAR * pivots.max():
+                return factors
+        except RuntimeError:
+            pass
+        # Bonds that end at too few points, as on bodies of a few particles, leave nodes undecided:
+        # these follow their neighbours along the outline.
+        a, b = edges[(edges >= 0).all(axis=1)].T
+        size = self.matrix.shape[0] // self.components
+        ones = np.ones(len(a))
+        adjacency = sparse.coo_array((ones, (a, b)), shape=(size, size))
+        links = adjacency + adjacency.T
+        laplacian = sparse.diags_array(links.sum(axis=0)) - links
+        blocks = sparse.block_diag([laplacian] * self.components)
+        scale = _SINGULAR**0.5 * np.abs(self.matrix.diagonal()).mean()
+        self.matrix = sparse.csc_array(self.matrix + scale * blocks)
+        return splu(self.matrix, **options)
+
+    def energy(self, values: Array, nodal: Array, others: Array, other_nodal: Array) -> float:
+        """Half the mutual energy of two fields, per volume of a particle.
+
+        Parameters
+        ----------
+        values, others : ndarray, shape (components, p)
+        nodal, other_nodal : ndarray, shape (components, s)
+            With `nodal` of the same field twice: its energy.
+        """
+        c = self.components
+        found = float((others * (self.transposed @ nodal.ravel()).reshape(c, -1)).sum())
+        found += float((other_nodal * (self.coupling @ values.ravel()).reshape(c, -1)).sum())
+        found += float((other_nodal * (self.matrix @ nodal.ravel()).reshape(c, -1)).sum())
+        for entry, (a, b) in zip(self.own, _ENTRIES, strict=False):
+            found += float((entry * others[a] * values[b]).sum())
+            if a != b:
+                found += float((entry * others[b] * values[a]).sum())
+        return 0.5 * found
+
+    def nodal(self, values: Array, load: Array | None = None) -> Array:
+        """Displacements of the nodes for values of the particles, (components, s).
+
+        Parameters
+        ----------
+        values : ndarray, shape (components, p)
+        load : ndarray, shape (components, nodes of the outline), optional
+            Forces on the nodes per volume of a particle.
+        """
+        force = -(self.coupling @ values.ravel())
+        if load is not None:
+            force += load[:, self.nodes].ravel()
+        return np.asarray(self._factors.solve(force).reshape(self.components, -1))
+
+    def reaction(self, values: Array) -> Array:
+        """−K_ps K_ss⁻¹ K_sp u: what the nodes do to the particles, both (components, p)."""
+        return (self.transposed @ self.nodal(values).ravel()).reshape(values.shape)
+
+    def pull(self, load: Array) -> Array:
+        """−K_ps K_ss⁻¹ f: loads of the particles that replace those of the nodes, on the left."""
+        nodes = self._factors.solve(load[:, self.nodes].ravel())
+        return (self.transposed @ nodes).reshape(self.components, -1)
+
+    def condensed(self, basis: sparse.csr_array) -> sparse.csr_array:
+        """−Bᵀ K_ps K_ss⁻¹ K_sp B for a sparse basis B of the particles' values."""
+        lowered = sparse.csc_array(self.coupling @ basis)
+        used = np.unique(lowered.nonzero()[1])
+        dense = lowered[:, used].toarray()
+        block = -(dense.T @ self._factors.solve(dense))
+        place = sparse.csr_array(
+            (np.ones(len(used)), (used, np.arange(len(used)))), shape=(basis.shape[1], len(used))
+        )
+        return sparse.csr_array(place @ sparse.csr_array(0.5 * (block + block.T)) @ place.T)
+
+    def strains(self, values: Array, nodal: Array) -> tuple[Array, Array]:
+        """Strains s and γ (or g) of the bonds, and the differences of the values at their ends.
+
+        Parameters
+        ----------
+        values, nodal : ndarray, shapes (components, p) and (components, s)
+            Of the particles and of the nodes.
+
+        Returns
+        -------
+        tuple of ndarray, shapes (strains, k) and (components, k)
+        """
+        here = np.searchsorted(self.particles, self.ended.particle)
+        ends = np.searchsorted(self.nodes, self.ended.outline.edges[self.ended.edge])
+        position = self.ended.position
+        there = (1 - position) * nodal[:, ends[:, 0]] + position * nodal[:, ends[:, 1]]
+        at = values[:, here]
+        strain = np.einsum("abk,bk->ak", self._ends[0], at)
+        strain += np.einsum("abk,bk->ak", self._ends[1], there)
+        return strain, there - at
+
+    def relief(self, which: Indices) -> Array:
+        """Diagonal blocks of −K_ps K_ss⁻¹ K_sp of some particles (positions among `particles`).
+
+        Shape (len(which), components, components).
+        """
+        c, count = self.components, len(self.particles)
+        blocks = np.zeros((len(which), c, c))
+        for begin in range(0, len(which), _CHUNK):
+            part = which[begin : begin + _CHUNK]
+            columns = (part[:, None] + count * np.arange(c)).ravel()
+            right = self.coupling[:, columns].toarray()
+            solved = self._factors.solve(right)
+            # One particle's columns at a time: only their products among themselves count.
+            right, solved = (x.reshape(-1, len(part), c) for x in (right, solved))
+            blocks[begin : begin + len(part)] = -np.einsum("spa,spb->pab", right, solved)
+        return 0.5 * (blocks + blocks.transpose(0, 2, 1))
+
+    @cached_property
+    def nbytes(self) -> int:
+        """Memory of matrices and factors, bytes."""
+        matrices = (self.coupling, self.transposed)
+        size = sum(m.data.nbytes + m.indices.nbytes + m.indptr.nbytes for m in matrices)
+        return int(size + 12 * self._factors.nnz + self.own.nbytes + self.ended.nbytes)
+
+
+class _Strains:
+    """s and γ (or g) of bonds of given offsets and lengths, as rows of values at their ends."""
+
+    def __init__(
+        self, family: Family, moduli: Moduli, components: int, offset: Indices, length: Array
+    ) -> None:
+        self.normal, self.tangent = family.normal[offset].T, family.tangent[offset].T
+        # A bond without length would be a rigid link. Below a share of the spacing its stiffness
+        # grows no more; its geometry stays, so that rigid motions still strain nothing.
+        length = np.maximum(length, SHORTEST * family.spacing)
+        self.length, self.spacing, self.components = length, family.spacing, components
+        weight = family.weight[offset] * family.cell * length
+        if isinstance(moduli, ConductiveModuli):
+            moduli_of = moduli.conductivity[offset] / family.length[offset]
+            #: Twice the energy for a strain of one, shape (strains, k).
+            self.weight: Array = (weight * moduli_of)[None]
+        elif components == 2:
+            self.weight = (weight * moduli.normal[offset])[None]
+        else:
+            self.weight = weight * np.array([moduli.normal[offset], moduli.shear[offset]])
+
+    def rows(self, sign: float, arm: Array) -> Array:
+        """The share of one end, shape (strains, components, k).
+
+        Parameters
+        ----------
+        sign : float
+            −1 where the bond starts, 1 where it ends.
+        arm : ndarray, shape (k,), m
+            What the rotation there contributes to −ℓ γ.
+        """
+        slope = sign / self.length
+        if self.components == 1:
+            return np.asarray(slope[None, None])
+        if self.components == 2:
+            return np.asarray((slope * self.normal)[None])
+        zero = np.zeros_like(slope)
+        # Rotations are scaled by the spacing.
+        turn = -arm / (self.spacing * self.length)
+        return np.array(
+            [[*(slope * self.normal), zero], [*(slope * self.tangent), turn]], dtype=np.float64
+        )
+
+
+def _between(nodes: Indices, position: Array) -> list[tuple[Indices, Array]]:
+    """Nodes (k, 2) and weights of points along edges."""
+    return [(nodes[:, 0], 1 - position), (nodes[:, 1], position)]
+
+
+def _place(rows: Array, ends: list[tuple[Indices, Array]], count: int) -> sparse.csr_array:
+    """Rows (strains, components, k) of values that are weighted means over `ends`."""
+    strains, components, size = rows.shape
+    row = np.arange(strains * size).reshape(strains, size)
+    values, i, j = [], [], []
+    for a in range(strains):
+        for b in range(components):
+            for place, weight in ends:
+                values.append(rows[a, b] * weight)
+                i.append(row[a])
+                j.append(b * count + place)
+    entries = np.concatenate(values), (np.concatenate(i), np.concatenate(j))
+    return sparse.csr_array(entries, shape=(strains * size, components * count))

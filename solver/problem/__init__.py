@@ -1,0 +1,1 @@
+"""What is asked: supports, loads, checks that all is held, and the scene as arrays."""

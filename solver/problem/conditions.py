@@ -1,0 +1,227 @@
+"""Supports and loads: what is prescribed in a scene, and what acts on it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import SceneError
+from ..geometry.edge_quadrature import Quadrature, Where
+from ..geometry.lattice import Lattice
+from ..geometry.outline import Outline
+from ..geometry.regions import Point, Region
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Value = float | ArrayLike | Callable[[Array, Array], Any]
+
+
+def select(lattice: Lattice, where: Where) -> Mask:
+    """Particles in a region, or those for which ``where(x, y)`` is true, shape (N,)."""
+    x, y = lattice.points.T
+    if isinstance(where, Region):
+        return where.contains(x, y)
+    selected = np.asarray(where(x, y))
+    if selected.dtype != bool or selected.shape != x.shape:
+        raise SceneError("a selection must return one boolean a particle")
+    return selected
+
+
+def evaluate(value: Value, points: Array, components: int, what: str) -> Array:
+    """Number, array or function (x, y) → shape (n, components) at `points`.
+
+    Raises
+    ------
+    SceneError
+        If the shape does not fit or a value is not finite.
+    """
+    raw = value(points[:, 0], points[:, 1]) if callable(value) else value
+    try:
+        array = np.asarray(raw, dtype=np.float64)
+        if components == 1:
+            result = np.broadcast_to(array, (len(points),))[:, None]
+        else:
+            result = np.broadcast_to(array, (len(points), components))
+    except (ValueError, TypeError) as error:
+        wanted = "one value" if components == 1 else f"{components} values"
+        raise SceneError(
+            f"{what} needs {wanted} a particle for {len(points)} particles, "
+            f"got shape {np.shape(raw)}"
+        ) from error
+    if not np.all(np.isfinite(result)):
+        bad = points[~np.isfinite(result).all(axis=1)][0]
+        raise SceneError(f"{what} is not finite at x = ({bad[0]:g}, {bad[1]:g})")
+    return np.array(result)
+
+
+@dataclass(frozen=True)
+class Support:
+    """Particles on which unknowns are prescribed.
+
+    Build one with `layer` or `where`. Values are numbers, arrays (one row for each selected
+    particle, in the lattice's order) or functions of (x, y). What is not given stays free.
+
+    Attributes
+    ----------
+    select : callable
+        Lattice → mask over the particles.
+    displacement : value of two components, m, optional
+    u1, u2 : values, m, optional
+        One component alone (a roller); not together with `displacement`.
+    rotation : value, rad, optional
+        Prescribe it wherever it is known: a layer with free rotations gets them wrong, because
+        its families are cut by the body's edge.
+    temperature : value, K (or V), optional
+    """
+
+    select: Callable[[Lattice], Mask]
+    displacement: Value | None = None
+    u1: Value | None = None
+    u2: Value | None = None
+    rotation: Value | None = None
+    temperature: Value | None = None
+
+    def __post_init__(self) -> None:
+        if self.displacement is not None and (self.u1 is not None or self.u2 is not None):
+            raise SceneError("give either displacement or u1 and u2 in a support, not both")
+        if not (self.given - {"rotation"}) and self.rotation is None:
+            raise SceneError(
+                "a support prescribes nothing: give displacement, u1, u2, rotation or temperature"
+            )
+
+    @property
+    def given(self) -> set[str]:
+        """Names of the values that are given."""
+        names = ("displacement", "u1", "u2", "rotation", "temperature")
+        return {name for name in names if getattr(self, name) is not None}
+
+    @classmethod
+    def layer(cls, cells: float, **values: Value) -> Support:
+        """Particles nearer than `cells` spacings to the body's edge.
+
+        Raises
+        ------
+        SceneError
+            If `cells` is not positive.
+        """
+        if not cells > 0:
+            raise SceneError(f"a layer needs a positive thickness in cells, not {cells}")
+        # Centres at exactly that depth belong to it whatever the rounding.
+        return cls(
+            lambda lattice: lattice.edge_distance <= cells * lattice.spacing * (1 + 1e-9), **values
+        )
+
+    @classmethod
+    def where(cls, where: Where, **values: Value) -> Support:
+        """Particles in a region, or those for which ``where(x, y)`` is true."""
+        return cls(lambda lattice: select(lattice, where), **values)
+
+    def columns(self, elastic: bool) -> list[tuple[int, Value, int, int]]:
+        """(unknown, value, component of it, components it has) of everything prescribed."""
+        wrong = {"temperature"} if elastic else {"displacement", "u1", "u2", "rotation"}
+        if self.given & wrong:
+            physics = "an elastic" if elastic else "a conductive"
+            raise SceneError(
+                f"{physics} scene has no {', '.join(sorted(self.given & wrong))} to prescribe"
+            )
+        found: list[tuple[int, Value, int, int]] = []
+        if self.displacement is not None:
+            found += [(0, self.displacement, 0, 2), (1, self.displacement, 1, 2)]
+        for unknown, value in ((0, self.u1), (1, self.u2), (2, self.rotation)):
+            if value is not None:
+                found.append((unknown, value, 0, 1))
+        if self.temperature is not None:
+            found.append((0, self.temperature, 0, 1))
+        return found
+
+
+@dataclass(frozen=True)
+class Load:
+    """Something that acts on the body, per unit volume or on its edges.
+
+    Attributes
+    ----------
+    kind : {"force", "couple", "source", "traction", "inflow"}
+        Body force (N/m³, two components), body couple (N m/m³), heat source (W/m³); on edges
+        traction (Pa, two components) and inflow of heat (W/m²).
+    density : callable, optional
+        Of a load in the body: lattice → (mask, densities of shape (selected, components)).
+    edge : callable, optional
+        Of a load on edges: outline → quadrature.
+    """
+
+    kind: str
+    density: Callable[[Lattice], tuple[Mask, Array]] | None = None
+    edge: Callable[[Outline], Quadrature] | None = None
+
+    @classmethod
+    def _body(cls, kind: str, value: Value, components: int, where: Where | None) -> Load:
+        def density(lattice: Lattice) -> tuple[Mask, Array]:
+            everywhere = np.ones(lattice.count, dtype=bool)
+            mask = everywhere if where is None else select(lattice, where)
+            if not mask.any():
+                raise SceneError(f"a {kind} acts on no particle")
+            return mask, evaluate(value, lattice.points[mask], components, f"a body {kind}")
+
+        return cls(kind, density)
+
+    @classmethod
+    def body_force(cls, force: Value, where: Where | None = None) -> Load:
+        """Body force (b1, b2), N/m³, as a pair, an (n, 2) array or a function of (x, y)."""
+        return cls._body("force", force, 2, where)
+
+    @classmethod
+    def couple(cls, couple: Value, where: Where | None = None) -> Load:
+        """Body couple c, N m/m³."""
+        return cls._body("couple", couple, 1, where)
+
+    @classmethod
+    def source(cls, source: Value, where: Where | None = None) -> Load:
+        """Heat (or current) source ω, W/m³."""
+        return cls._body("source", source, 1, where)
+
+    @classmethod
+    def traction(cls, traction: Value, start: Point, end: Point) -> Load:
+        """Traction (t1, t2), Pa, on the straight part of the body's edge from `start` to `end`."""
+
+        def edge(outline: Outline) -> Quadrature:
+            rule = Quadrature.between(outline, np.array(start), np.array(end))
+            if not len(rule):
+                raise SceneError(f"no edge of the body runs along {start}–{end}")
+            return rule.carrying(evaluate(traction, rule.points, 2, "a traction"))
+
+        return cls("traction", edge=edge)
+
+    @classmethod
+    def stress(cls, stress: Value, where: Where | None = None) -> Load:
+        """The traction σ·n of a stress (σ11, σ22, σ12), Pa, on the body's outer edges and holes.
+
+        Parameters
+        ----------
+        stress : triple, or function of (x, y) → (..., 3)
+        where : Region or callable, optional
+            The part of the edge that carries it; all of it by default. Faces of cracks never do.
+        """
+
+        def edge(outline: Outline) -> Quadrature:
+            rule = Quadrature.over(outline, where)
+            s11, s22, s12 = evaluate(stress, rule.points, 3, "a stress at the edge").T
+            n1, n2 = rule.normals.T
+            return rule.carrying(np.column_stack([s11 * n1 + s12 * n2, s12 * n1 + s22 * n2]))
+
+        return cls("traction", edge=edge)
+
+    @classmethod
+    def flux(cls, flux: Value, where: Where | None = None) -> Load:
+        """What a flux (q1, q2), W/m², carries into the body through its edges: −q·n."""
+
+        def edge(outline: Outline) -> Quadrature:
+            rule = Quadrature.over(outline, where)
+            q = evaluate(flux, rule.points, 2, "a flux at the edge")
+            return rule.carrying(-np.einsum("ki,ki->k", q, rule.normals)[:, None])
+
+        return cls("inflow", edge=edge)

@@ -1,0 +1,161 @@
+"""Scene files: solved as written, refused with the line that is wrong."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from cmverify.cli import app
+from cmverify.exchange import scene_file
+from cmverify.exchange.expressions import Formula
+from cmverify.exchange.scene_file import SceneFileError
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+
+SMALL = """\
+[discretisation]
+spacing = 0.1
+m = 3
+
+[region]
+shape = "disc"
+radius = 1.0
+
+[material]
+kind = "conductivity"
+tensor = [[5, 2], [2, 1]]
+
+[[support]]
+layer_cells = 3.5
+temperature = "x**2 - 5*y**2"
+"""
+
+
+def written(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    return path
+
+
+def test_a_scene_is_solved_as_written(tmp_path):
+    # x^2 - 5 y^2 is harmonic in diag(5, 1), exactly reproduced by the lattice calibration
+    text = SMALL.replace("[[5, 2], [2, 1]]", "[[5, 0], [0, 1]]")
+    scene, options = scene_file.read(written(tmp_path, text))
+    assert options == {}
+    solution = scene.solve(tolerance=1e-13)
+    x, y = solution.points.T
+    np.testing.assert_allclose(solution.temperature, x**2 - 5 * y**2, atol=1e-11)
+    fields = scene_file.fields(solution)
+    assert set(fields) == {"prescribed", "temperature", "flux"}
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda p: p.name)
+def test_examples_can_be_read(path):
+    scene, _ = scene_file.read(path)
+    assert scene.supports
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "message"),
+    [
+        ("spacing = 0.1", "spacin = 0.1", 2, "did you mean 'spacing'"),
+        ("radius = 1.0", "raduis = 1.0", 7, "did you mean 'radius'"),
+        ('shape = "disc"', 'shape = "disk"', 6, "is not one of disc"),
+        ('"x**2 - 5*y**2"', '"x**2 - 5*z**2"', 15, "unknown name 'z'"),
+        ('"x**2 - 5*y**2"', '"x**2 -"', 15, "not a formula"),
+        ("layer_cells = 3.5", "layer_cels = 3.5", 14, "did you mean 'layer_cells'"),
+        ("layer_cells = 3.5\n", "", 13, "either layer_cells or where"),
+        ("tensor = [[5, 2], [2, 1]]", "", 9, "'tensor' is missing"),
+        ("m = 3", 'law = "cosin"', 3, "is not one of cosine"),
+        ("m = 3", "exponent = 4", 3, 'law = "cosine"'),
+        ("[[support]]", "[[suport]]", 13, "did you mean 'support'"),
+    ],
+)
+def test_a_wrong_key_is_named_with_its_line(tmp_path, old, new, line, message):
+    assert old in SMALL
+    with pytest.raises(SceneFileError) as caught:
+        scene_file.read(written(tmp_path, SMALL.replace(old, new)))
+    assert message in str(caught.value)
+    assert f"scene.toml:{line}:" in str(caught.value)
+
+
+def test_the_second_of_two_tables_is_named_by_its_own_line(tmp_path):
+    text = SMALL + '\n[[support]]\nlayer_cells = 1\ntemperatur = "x"\n'
+    with pytest.raises(SceneFileError, match=r"scene\.toml:19: \[support #2\].*'temperature'"):
+        scene_file.read(written(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[discretisation\n", "is not TOML"),
+        ("[discretisation]\nspacing = 0.1\n", r"\[region\] is missing"),
+        (SMALL.replace("[[5, 2], [2, 1]]", "[[1, 2], [2, 1]]"), "positive"),
+    ],
+)
+def test_what_cannot_be_a_scene_is_refused(tmp_path, text, message):
+    with pytest.raises(SceneFileError, match=message):
+        scene_file.read(written(tmp_path, text))
+
+
+def test_a_missing_file_is_refused(tmp_path):
+    with pytest.raises(SceneFileError, match="cannot be read"):
+        scene_file.read(tmp_path / "none.toml")
+
+
+def test_formulas_compute_what_they_say():
+    x, y = np.array([0.5, 2.0]), np.array([1.0, -1.0])
+    np.testing.assert_allclose(Formula("exp(x - 2*y)*cos(y)")(x, y), np.exp(x - 2 * y) * np.cos(y))
+    np.testing.assert_allclose(Formula("-x**2 + pi")(x, y), np.pi - x**2)
+    np.testing.assert_allclose(Formula("3")(x, y), [3.0, 3.0])
+    assert Formula("x < 1")(x, y).dtype == bool
+    assert Formula("where(x < 1, x, y)")(x, y).tolist() == [0.5, -1.0]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["__import__('os')", "x.real", "(lambda: 1)()", "[x]", "'x'", "x if y else 1", "open(x)"],
+)
+def test_formulas_run_no_code(text):
+    with pytest.raises(ValueError, match=r"unknown name|not allowed"):
+        Formula(text)
+
+
+def test_a_fracture_table_is_run_and_written(tmp_path):
+    text = (EXAMPLES / "double_cantilever.toml").read_text()
+    text = text.replace("spacing = 0.05", "spacing = 0.1").replace("advance = 0.5", "advance = 0.3")
+    path = written(tmp_path, text)
+    result = CliRunner().invoke(app, ["solve", str(path)])
+    assert result.exit_code == 0, result.output
+    assert "bonds broken" in result.output
+    history = np.genfromtxt(tmp_path / "scene.history.csv", delimiter=",", names=True)
+    assert history["advance"][-1] >= 0.3
+    balance = history["work"] - history["stored"] - history["dissipated"] - history["excess"]
+    assert np.abs(balance).max() < 1e-6 * history["work"].max()
+    track = np.loadtxt(tmp_path / "scene.path.csv", delimiter=",", skiprows=1)
+    # The body is symmetric: the crack runs straight on from its tip.
+    np.testing.assert_allclose(track[0], [-1.0, 0.0])
+    np.testing.assert_allclose(track[:, 1], 0.0, atol=1e-9)
+    assert np.load(tmp_path / "scene.npz")["damage"].max() > 0.2
+
+
+def test_scenes_without_a_fracture_table_have_no_plan(tmp_path):
+    assert scene_file.read_fracture(written(tmp_path, SMALL)) is None
+
+
+@pytest.mark.parametrize(
+    ("table", "line", "message"),
+    [
+        ("G = 1.0", 2, "did you mean 'G"),
+        ("control = 'fixed'", 1, "'G1' .* is missing"),
+        ("G1 = -1.0", 1, "must be positive"),
+        ("G1 = 1.0\nstop = -2.0", 1, "stops at"),
+        ("G1 = 1.0\nno_fail = 'q > 1'", 3, "q"),
+    ],
+)
+def test_fracture_tables_that_make_no_sense(tmp_path, table, line, message):
+    path = written(tmp_path, f"{SMALL}\n[fracture]\n{table}\n")
+    at = SMALL.count("\n") + 1 + line
+    with pytest.raises(SceneFileError, match=rf"scene\.toml:{at}: \[fracture\] .*{message}"):
+        scene_file.read_fracture(path)

@@ -1,0 +1,94 @@
+"""The speed study: what it measures is right, and its verdicts can fail. No test asserts time."""
+
+import numpy as np
+import pytest
+
+from cmverify.studies.speed import measure, verdicts
+from cmverify.studies.speed.measure import Row
+
+
+def test_all_formats_hold_the_same_operator() -> None:
+    rows = measure.kernel(12)
+    kinds = {row.name.split(":")[0] for row in rows}
+    assert kinds == {"elastic, 3 unknowns", "central, 2 unknowns", "conductive, 1 unknown"}
+    for row in rows:
+        assert row.values["error"] <= 1e-13
+        assert row.values["ms"] > 0
+        assert np.isfinite(row.values["slower"])
+
+
+def test_alternative_solvers_reach_the_same_residual() -> None:
+    rows = measure.solvers(12, repeats=1)
+    assert rows[0].name == "bond solver, two-level CG, 1 thread"
+    assert "SciPy CG, block Jacobi, CSR" in [row.name for row in rows]
+    assert all(row.values["residual"] <= 1.01e-8 for row in rows)
+
+
+def test_iterations_on_all_static_scenes() -> None:
+    found = verdicts.of_scenes(measure.scenes(20))
+    assert len(found) == 15
+    assert all(v.passed for v in found), [v for v in found if not v.passed]
+
+
+def test_surfaces_cost_few_iterations_and_nothing_where_there_are_none() -> None:
+    rows = measure.surfaces(20)
+    found = verdicts.of_surfaces(rows)
+    assert len(found) == 8
+    assert all(v.passed for v in found), [v for v in found if not v.passed]
+    # Where there are free surfaces the treatment is there.
+    by_name = {row.name: row.values for row in rows}
+    assert by_name["plate with a hole: extrapolated"]["bytes ÷ none"] > 2
+
+
+def test_growth_reports_flat_iterations_and_a_falling_error() -> None:
+    rows = measure.growth((30, 60))
+    assert all(row.values["iterations"] <= 12 for row in rows)
+    assert rows[1].values["error"] < rows[0].values["error"]
+    assert rows[1].values["particles"] > 3 * rows[0].values["particles"]
+
+
+@pytest.mark.parametrize(
+    ("judge", "good", "bad"),
+    [
+        (
+            verdicts.of_kernel,
+            Row("x: SciPy CSR", {"slower": 5.05, "memory": 20.2, "error": 1e-15, "threads": 1}),
+            Row("x: SciPy CSR", {"slower": 4.95, "memory": 19.8, "error": 1e-12, "threads": 1}),
+        ),
+        (
+            verdicts.of_kernel,
+            Row("x: matrix-free, 2 threads", {"slower": 1 / 1.62, "threads": 2}),
+            Row("x: matrix-free, 2 threads", {"slower": 1 / 1.58, "threads": 2}),
+        ),
+        (
+            verdicts.of_surfaces,
+            Row("heat: extrapolated", {"iterations ÷ none": 1.5, "bytes ÷ none": 1.0}),
+            Row("heat: extrapolated", {"iterations ÷ none": 1.51, "bytes ÷ none": 1.01}),
+        ),
+        (
+            verdicts.of_solvers,
+            Row("MKL PARDISO", {"slower": 30.3}),
+            Row("MKL PARDISO", {"slower": 29.7}),
+        ),
+        (
+            verdicts.of_growth,
+            Row("a/60", {"iterations": 12, "us_per_particle": 1.0, "peak_gb": 1.0}),
+            Row("a/60", {"iterations": 13, "us_per_particle": 1.0, "peak_gb": 1.0}),
+        ),
+    ],
+)
+def test_verdicts_turn_at_their_bounds(judge, good: Row, bad: Row) -> None:  # type: ignore[no-untyped-def]
+    assert all(v.passed for v in judge([good]))
+    assert not any(v.passed for v in judge([bad]))
+
+
+def test_a_million_particles_are_held_to_cost_and_memory() -> None:
+    base = Row("a/120", {"iterations": 12, "us_per_particle": 10.0, "peak_gb": 0.3})
+    large = Row("a/560", {"iterations": 12, "us_per_particle": 15.2, "peak_gb": 4.1})
+    failed = [v.what for v in verdicts.of_growth([base, large]) if not v.passed]
+    assert failed == ["a/560: time per particle ÷ a/120's", "a/560: peak memory, GB"]
+
+
+def test_not_a_number_fails() -> None:
+    row = Row("MKL PARDISO", {"slower": float("nan")})
+    assert not verdicts.of_solvers([row])[0].passed

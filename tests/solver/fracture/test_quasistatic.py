@@ -1,0 +1,449 @@
+"""The fracture engine: by hand on one and two bonds, then against the exact reference."""
+
+import dataclasses
+import os
+import signal
+import subprocess
+import sys
+
+import numba
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from solver import Crack, ElasticTensor, Load, Scene, SceneError, Support, fracture, rectangle
+from solver.bonds.bonds import Bonds
+from solver.fracture.programme import Programme
+from tests.solver.bodies import block, few
+from tests.solver.fracture.one_bond_at_a_time import grow_singly
+
+STIFF = np.array([[3.0, 0.8, 0.2], [0.8, 2.0, 0.1], [0.2, 0.1, 1.1]])
+SOFT = ElasticTensor.isotropic(1.0, 0.2)
+
+
+def chain(length, load=None, **end):
+    """Particles in a row that can only move along it; the first is held, bonds reach one cell."""
+    supports = [
+        Support.where(lambda x, y: x < length, u2=0.0, rotation=0.0),
+        Support.where(lambda x, y: x < 1, u1=0.0),
+    ]
+    if end:
+        supports.append(Support.where(lambda x, y: x > length - 1, **end))
+    return Scene(
+        block(length, 1), 1.0, SOFT, m=1, area_rule="partial", calibration="continuum",
+        surface="none", supports=supports, loads=[] if load is None else [load],
+    )  # fmt: skip
+
+
+def pair(scene):
+    """Stiffness E of the energy ½ E u² of one bond of unit length, and its pair volume."""
+    parts = scene.discretise()
+    o = int(np.flatnonzero((parts.family.offsets == [1, 0]).all(axis=1))[0])
+    weight = parts.family.weight[o] * parts.family.cell**2
+    return parts.moduli.normal[o] * weight, weight
+
+
+def test_one_bond_under_a_load():
+    scene = chain(2, Load.body_force((1.0, 0.0), where=lambda x, y: x > 1))
+    stiffness, volume = pair(scene)
+    run = fracture.grow(scene, 0.03, Programme(stop=10.0))
+    # u = F/E, and ½ E u² = w_c V.
+    cost = 0.03 * volume
+    critical = np.sqrt(2 * cost * stiffness)
+    assert run.history.factor[-1] == pytest.approx(critical, rel=1e-12)
+    assert run.history.work[-1] == pytest.approx(critical**2 / stiffness / 2, rel=1e-12)
+    assert run.history.displacement[-1] == pytest.approx(critical / stiffness, rel=1e-12)
+    assert run.history.stored[-1] == pytest.approx(cost, rel=1e-12)
+    assert "come loose" in run.reason
+    assert len(run.broken_bonds) == 1
+    # A body that bears the load comes to the programme's end.
+    strong = fracture.grow(scene, 0.03, Programme(stop=0.99 * critical))
+    assert strong.reason == "the programme is done"
+    assert strong.history.factor[-1] == 0.99 * critical
+    assert not len(strong.broken_bonds)
+
+
+def test_two_bonds_of_which_one_must_not_break():
+    scene = chain(3, u1=1.0)
+    stiffness, volume = pair(scene)
+    run = fracture.grow(
+        scene, 0.03, Programme(stop=100.0), no_fail=[lambda x, y: x < 1], monitors={"twice": lambda
+        run: 2 * run.factor}
+    )  # fmt: skip
+    cost = 0.03 * volume
+    # Each bond is stretched by λ/2.
+    critical = 2 * np.sqrt(2 * cost / stiffness)
+    h = run.history
+    event = np.flatnonzero(h.broken)[0]
+    assert h.factor[event] == pytest.approx(critical, rel=1e-12)
+    # The other bond relaxes: its energy, equal to the first's, is excess.
+    assert h.work[event] == pytest.approx(2 * cost, rel=1e-12)
+    assert h.stored[event] == pytest.approx(0.0, abs=1e-15)
+    assert h.dissipated[event] == pytest.approx(cost, rel=1e-12)
+    assert h.excess[event] == pytest.approx(cost, rel=1e-12)
+    assert h.force[event] == pytest.approx(0.0, abs=1e-14)
+    assert h.twice[event] == 2 * h.factor[event]
+    assert run.reason == "the programme is done"
+    np.testing.assert_array_equal(run.damage, [0.0, 0.5, 1.0])
+
+
+def test_two_equal_bonds_break_together_and_leave_the_middle_loose():
+    run = fracture.grow(chain(3, u1=1.0), 0.03, Programme(stop=100.0), batch=1)
+    assert len(run.broken_bonds) == 2
+    assert run.loose.tolist() == [False, True, False] or "come loose" in run.reason
+
+
+def plate(voigt=STIFF, size=9, surface="volume", loads=(), **options):
+    """A plate with an edge crack, pulled up and sheared by its upper rows."""
+    supports = [
+        Support.where(lambda x, y: y < 1, displacement=(0.0, 0.0), rotation=0.0),
+        Support.where(lambda x, y: y > size - 1, displacement=(0.3, 1.0)),
+    ]
+    return Scene(
+        block(size + 1, size), 1.0, ElasticTensor(voigt), m=2, surface=surface, loads=loads,
+        supports=supports, cracks=[Crack((-1.0, 4.7), (3.2, 4.9))], **options,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("seed", "surface"), [(1, "none"), (2, "volume"), (3, "extrapolated")])
+def test_one_bond_at_a_time_is_the_exact_sequence(seed, surface):
+    rng = np.random.default_rng(seed)
+    tensor = STIFF + 0.05 * np.diag(rng.uniform(-1, 1, 3))
+    scene = plate(tensor, surface=surface, loads=[Load.body_force((0.0, 1e-3))], loose="drop")
+    half = scene.family().size // 2
+    critical = np.tile(rng.uniform(0.8, 1.2, half), 2)
+    exact = grow_singly(scene, critical, 8)
+    run = fracture.grow(
+        scene,
+        critical,
+        Programme(stop=1e6),
+        batch=1,
+        max_solves=2 * len(exact) + 2,
+        tolerance=1e-12,
+    )
+    breaks = run.breaks
+    steps = np.unique(breaks["step"])
+    assert len(steps) >= len(exact) == 8
+    for step, event in zip(steps, exact, strict=False):
+        mine = breaks[breaks["step"] == step]
+        assert set(zip(mine["offset"].tolist(), mine["origin"].tolist(), strict=True)) == (
+            event.bonds
+        )
+        np.testing.assert_allclose(mine["factor"], event.factor, rtol=1e-7)
+    # A toughness one per cent higher is not the same sequence of loads.
+    other = fracture.grow(scene, 1.01 * critical, Programme(stop=1e6), batch=1, max_solves=3)
+    ratio = other.breaks["factor"][0] / breaks["factor"][0]
+    assert ratio == pytest.approx(np.sqrt(1.01), rel=1e-6)
+
+
+def test_batches_end_where_single_bonds_end():
+    scene = plate(loose="drop")
+    runs = [
+        fracture.grow(scene, 1.0, Programme(stop=1e6), batch=b, until=lambda r: r.advance >= 3)
+        for b in (1, 4, 8)
+    ]
+    peaks = [run.history.factor.max() for run in runs]
+    # A family of 20 bonds and 3 cells of growth: the coarsest body there is.
+    np.testing.assert_allclose(peaks, peaks[0], rtol=0.01)
+    for run in runs[1:]:
+        assert np.linalg.norm(run.tip - runs[0].tip) <= scene.m * scene.spacing
+
+
+def test_energies_balance_with_bonds_that_end_at_the_surface():
+    run = fracture.grow(slit(0.4, surface="extrapolated"), 1.0, max_solves=15, tolerance=1e-10)
+    h = run.history
+    assert h.broken[-1] > 10
+    assert np.abs(h.imbalance).max() <= 1e-8 * h.work.max()
+    own = run.body.surface_energy()
+    # The balance would see one per cent of what is stored in bonds that end.
+    assert 0.01 * own > 1e-6 * h.stored[-1] / run.factor**2
+
+
+@few
+@given(
+    st.integers(0, 10**6),
+    st.sampled_from(["fixed", "following"]),
+    st.integers(1, 9),
+    st.sampled_from(["volume", "extrapolated"]),
+)
+def test_energies_balance(seed, control, batch, surface):
+    rng = np.random.default_rng(seed)
+    loads = [Load.body_force(lambda x, y: 1e-2 * rng.standard_normal((len(x), 2)))]
+    # On nodes of the surface, where there are some.
+    loads.append(Load.stress((0.02, 0.01, 0.03), where=lambda x, y: (y > 2) & (y < 7)))
+    scene = plate(loads=loads, surface=surface)
+    run = fracture.grow(
+        scene, 1.0, Programme(control=control, stop=1e6), batch=batch, max_solves=16,
+        tolerance=1e-11,
+    )  # fmt: skip
+    h = run.history
+    assert h.dissipated[-1] > 0
+    assert np.abs(h.imbalance).max() <= 1e-8 * h.work.max()
+    # The balance sees one per cent of what is dissipated.
+    assert 0.01 * h.dissipated[-1] > 1e-6 * h.work.max()
+    # No bond breaks below its strength, so that the excess only grows.
+    if control == "fixed":
+        assert (np.diff(h.excess) >= -1e-8 * h.work.max()).all()
+
+
+def test_a_crack_that_comes_to_a_free_edge_ends_the_run_beside_extrapolated_surfaces():
+    # A strip pulled apart along its held rows, from the edge on: nodes there would hold it.
+    scene = Scene(
+        rectangle(8.0, 12.0), 1.0, ElasticTensor(STIFF), m=2, surface="extrapolated",
+        supports=[Support.where(lambda x, y: y < -5, displacement=(0.0, 0.0), rotation=0.0)],
+        loads=[Load.body_force((0.0, 1.0), where=lambda x, y: y < 4)], loose="drop",
+    )  # fmt: skip
+    run = fracture.grow(scene, 1e-3, Programme(stop=1e6), batch=8, max_solves=200)
+    assert "free edge" in run.reason
+    whole = dataclasses.replace(scene, surface="volume")
+    assert "come loose" in fracture.grow(whole, 1e-3, Programme(stop=1e6), batch=8).reason
+
+
+def test_a_body_in_two_ends_the_run():
+    # What the solver leaves of a force between the halves breaks nothing.
+    for control in ("fixed", "following"):
+        scene = Scene(
+            rectangle(6.0, 12.0), 1.0, ElasticTensor(STIFF), m=2, surface="none",
+            supports=[
+                Support.where(lambda x, y: y < -4, displacement=(0.0, 0.0), rotation=0.0),
+                Support.where(lambda x, y: y > 4, displacement=(0.0, 1.0), rotation=0.0),
+            ],
+        )  # fmt: skip
+        run = fracture.grow(scene, 1e-3, Programme(control=control), batch=8, max_solves=300)
+        assert "no load breaks another bond" in run.reason
+        assert run.history.factor.max() < 1e4 * run.history.factor[1]
+
+
+def slit(shear, n=8, **options):
+    """A disc with a slit, its rim moved as in mode I and `shear` times mode II."""
+
+    def rim(x, y):
+        return np.stack([shear * y, y], axis=-1)
+
+    supports = [Support.layer(cells=2.5, displacement=rim, rotation=0.0)]
+    return Scene(
+        rectangle(4 * n, 3 * n), 1.0, SOFT, m=3, cracks=[Crack((-3 * n, 0), (-n, 0))],
+        supports=supports, **options,
+    )  # fmt: skip
+
+
+def test_a_symmetric_body_cracks_straight():
+    run = fracture.grow(slit(0.0), 1.0, until=lambda run: run.advance >= 10)
+    assert run.tip[1] == pytest.approx(0.0, abs=1e-12)
+    assert run.advance >= 10
+    np.testing.assert_allclose(run.path[:, 1], 0.0, atol=1e-12)
+    y = run.midpoints[:, 1]
+    np.testing.assert_allclose(np.sort(y), np.sort(-y), atol=1e-12)
+    assert run.damage.max() < 0.9
+
+
+def test_a_mirrored_load_makes_the_mirrored_crack():
+    runs = [fracture.grow(slit(s), 1.0, until=lambda run: run.advance >= 8) for s in (2.5, -2.5)]
+    mirrored = runs[1].midpoints * [1.0, -1.0]
+    assert abs(runs[0].tip[1]) > 1
+    np.testing.assert_allclose(
+        sorted(map(tuple, runs[0].midpoints.round(9))), sorted(map(tuple, mirrored.round(9)))
+    )
+    np.testing.assert_allclose(runs[0].history.factor, runs[1].history.factor, rtol=1e-6)
+
+
+def test_results_do_not_depend_on_threads():
+    before = numba.get_num_threads()
+    try:
+        runs = []
+        for threads in (1, before):
+            numba.set_num_threads(threads)
+            runs.append(fracture.grow(slit(0.5), 1.0, max_solves=12))
+    finally:
+        numba.set_num_threads(before)
+    np.testing.assert_array_equal(runs[0].body.x, runs[1].body.x)
+    np.testing.assert_array_equal(runs[0].history.array, runs[1].history.array)
+
+
+@pytest.mark.parametrize("interrupted", [7, 20])
+def test_a_run_goes_on_from_its_checkpoint_to_the_last_bit(tmp_path, interrupted):
+    path = tmp_path / "run.npz"
+    options = {"max_solves": 30, "batch": 6}
+    whole = fracture.grow(slit(0.5), 1.0, **options)
+    fracture.grow(slit(0.5), 1.0, **(options | {"max_solves": interrupted}), checkpoint=path)
+    later = fracture.grow(slit(0.5), 1.0, **options, checkpoint=path)
+    np.testing.assert_array_equal(later.body.x, whole.body.x)
+    np.testing.assert_array_equal(later.breaks, whole.breaks)
+    np.testing.assert_array_equal(later.steps, whole.steps)
+    np.testing.assert_array_equal(later.history.array, whole.history.array)
+    assert whole.steps["refreshed"].sum() > 1, "the preconditioner was never brought up to date"
+    # A finished run is only read, and a file of another run is refused.
+    again = fracture.grow(slit(0.5), 1.0, **options, checkpoint=path)
+    np.testing.assert_array_equal(again.breaks, whole.breaks)
+    with pytest.raises(SceneError, match="another scene"):
+        fracture.grow(slit(0.5), 1.01, **options, checkpoint=path)
+    path.write_bytes(b"no archive")
+    with pytest.raises(SceneError, match="no checkpoint"):
+        fracture.grow(slit(0.5), 1.0, **options, checkpoint=path)
+
+
+def test_a_killed_writer_leaves_the_old_file(tmp_path, monkeypatch):
+    path = tmp_path / "run.npz"
+    fracture.grow(slit(0.5), 1.0, max_solves=3, checkpoint=path)
+    old = path.read_bytes()
+
+    def killed(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(np, "savez", killed)
+    with pytest.raises(KeyboardInterrupt):
+        fracture.grow(slit(0.5), 1.0, max_solves=6, checkpoint=path)
+    assert path.read_bytes() == old
+    assert [p.name for p in tmp_path.iterdir()] == ["run.npz"]
+
+
+@few
+@given(st.integers(0, 10**6), st.sampled_from(["none", "volume", "extrapolated"]))
+def test_bonds_that_break_later_are_bonds_that_were_broken(seed, surface):
+    rng = np.random.default_rng(seed)
+    parts = plate(surface=surface).discretise()
+    lattice, family = parts.lattice, parts.family
+    exists = np.stack([parts.bonds.factor(o) > 0 for o in range(family.size // 2)])
+    bonds, broken = parts.bonds, np.zeros_like(exists)
+    for _ in range(3):
+        chosen = rng.permutation(np.flatnonzero(exists & ~broken))[:5]
+        broken.ravel()[chosen] = True
+        bonds = bonds.breaking(*np.divmod(chosen, lattice.count))
+    held = parts.prescribed.all(axis=0)
+    anew = Bonds(lattice, family, parts.scene.cracks, surface, held, broken)
+    np.testing.assert_array_equal(bonds.special, anew.special)
+    np.testing.assert_array_equal(bonds.factors, anew.factors)
+    np.testing.assert_array_equal(bonds.column, anew.column)
+
+
+def test_increments_are_multiples_and_nothing_is_stepped_through():
+    run = fracture.grow(slit(0.0), 1.0, Programme(increment=0.05), max_solves=20)
+    k = run.history.factor / 0.05
+    np.testing.assert_allclose(k, k.round(), atol=1e-9)
+    first = np.flatnonzero(run.history.factor > 0)[0]
+    assert first == 1
+    assert k[first] > 2
+    exact = fracture.grow(slit(0.0), 1.0, max_solves=2)
+    event = exact.history.factor[1]
+    assert event <= run.history.factor[1] < event + 0.05
+
+
+def test_unloading_breaks_nothing_and_gives_back_the_stored_energy():
+    levels = (2.0, 0.0, 1.9)
+    run = fracture.grow(slit(0.0), 1.0, Programme(levels=levels))
+    h = run.history
+    assert len(run.broken_bonds)
+    down = np.flatnonzero(h.factor == 0.0)[-1]
+    assert h.stored[down] == pytest.approx(0.0, abs=1e-12)
+    assert h.work[down] == pytest.approx(h.dissipated[down] + h.excess[down], rel=1e-6)
+    # Back to less than before: nothing new breaks.
+    assert h.broken[-1] == h.broken[down]
+    assert h.factor[-1] == 1.9
+
+
+def test_a_load_that_follows_the_crack_leaves_little_excess():
+    fixed, following = (
+        fracture.grow(slit(0.0), 1.0, Programme(control=c), until=lambda run: run.advance >= 6,
+                      batch=1)
+        for c in ("fixed", "following")
+    )  # fmt: skip
+    assert following.tip == pytest.approx(fixed.tip)
+    assert following.history.excess[-1] < fixed.history.excess[-1]
+    assert (np.diff(following.history.factor) < 0).any()
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"programme": Programme()}, "no end"),
+        ({"batch": 0, "max_solves": 3}, "batch"),
+        ({"monitors": {"work": lambda run: 0.0}, "max_solves": 3}, "names of their own"),
+    ],
+)
+def test_runs_that_make_no_sense(options, message):
+    with pytest.raises(ValueError, match=message):
+        fracture.grow(plate(), 1.0, **options)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"start": -1.0},
+        {"start": 2.0, "stop": 1.0},
+        {"increment": 0.0},
+        {"overload": -0.1},
+        {"levels": ()},
+        {"levels": (1.0,), "control": "following"},
+        {"increment": 0.1, "control": "following"},
+        {"control": "free"},
+    ],
+)
+def test_programmes_that_make_no_sense(options):
+    with pytest.raises(SceneError):
+        Programme(**options)
+
+
+def test_adaptive_increments_keep_the_overload():
+    programme = Programme(increment=1.0, overload=0.1)
+    # 1.3 lies under 2; half a step gives 1.5, (1.5/1.3)² > 1.1; a quarter 1.5; an eighth 1.375.
+    assert programme.reach(1.3, 9.0) == 1.3125 or programme.reach(1.3, 9.0) == 1.375
+    assert (programme.reach(1.3, 9.0) / 1.3) ** 2 <= 1.1
+    assert Programme(overload=0.21).reach(1.0, 9.0) == pytest.approx(1.1)
+    assert Programme(increment=1.0).reach(1.3, 9.0) == 2.0
+    assert Programme(increment=1.0).reach(1.3, 1.6) == 1.6
+
+
+@pytest.mark.parametrize("control", ["fixed", "following"])
+def test_a_part_that_both_its_ligaments_leave_is_set_aside(control):
+    """A bar with two equal notches: the piece between them comes loose."""
+    supports = [
+        Support.where(lambda x, y: x < 2, displacement=(-1.0, 0.0), rotation=0.0),
+        Support.where(lambda x, y: x > 12, displacement=(1.0, 0.0), rotation=0.0),
+    ]
+    cracks = [Crack((x, y), (x, y + side * 3)) for x in (4, 10) for y, side in ((1, -1), (3, 1))]
+    scene = Scene(block(14, 4), 1.0, SOFT, m=2, supports=supports, cracks=cracks, surface="none")
+    run = fracture.grow(scene, 1.0, Programme(control=control, stop=1e3), tolerance=1e-11)
+    x = run.solution.points[:, 0]
+    np.testing.assert_array_equal(run.loose, (x > 4) & (x < 10))
+    assert np.isnan(run.solution.displacement[run.loose]).all()
+    assert np.isfinite(run.solution.displacement[~run.loose]).all()
+    h = run.history
+    assert h.stored[-1] == pytest.approx(0.0, abs=1e-6 * h.work.max())
+    assert np.abs(h.imbalance).max() <= 1e-8 * h.work.max()
+
+
+def test_a_killed_run_goes_on(tmp_path):
+    """Killed for good in the middle of a solve's aftermath, between two checkpoints."""
+    path = tmp_path / "run.npz"
+    script = f"""
+import os, signal
+from solver import fracture
+from tests.solver.fracture.test_quasistatic import slit
+
+def until(run):
+    if len(run.steps) == 17:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+fracture.grow(slit(0.5), 1.0, max_solves=24, until=until, checkpoint={str(path)!r}, every=5)
+"""
+    killed = subprocess.run([sys.executable, "-c", script], check=False, cwd=os.getcwd())
+    assert killed.returncode == -signal.SIGKILL
+    with np.load(path) as file:
+        assert 10 <= len(file["steps"]) < 17
+    later = fracture.grow(slit(0.5), 1.0, max_solves=24, checkpoint=path)
+    whole = fracture.grow(slit(0.5), 1.0, max_solves=24)
+    np.testing.assert_array_equal(later.body.x, whole.body.x)
+    np.testing.assert_array_equal(later.breaks, whole.breaks)
+    np.testing.assert_array_equal(later.history.array, whole.history.array)
+
+
+def test_indefinite_bodies_break_by_the_energy_of_stretch():
+    soft = ElasticTensor.isotropic(1.0, 0.45).voigt
+    with pytest.raises(SceneError, match="negative shear stiffness"):
+        fracture.grow(plate(soft), 1.0, max_solves=3)
+    run = fracture.grow(plate(soft), 1.0, criterion="axial", max_solves=8, tolerance=1e-10)
+    h = run.history
+    assert run.body.sign == "indefinite"
+    assert len(run.broken_bonds) >= 3
+    assert np.abs(h.imbalance).max() <= 1e-8 * h.work.max()

@@ -1,0 +1,323 @@
+"""Supports and loads: values of every kind, resultants, and clear refusals."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from solver import (
+    ConductivityTensor,
+    ElasticTensor,
+    Load,
+    Scene,
+    SceneError,
+    Support,
+    disc,
+    polygon,
+    rectangle,
+)
+from solver.geometry.lattice import Lattice
+from solver.problem.conditions import evaluate
+from tests.solver.bodies import exact
+
+SQUARE = rectangle(1.0, 1.0)
+SOLID, CONDUCTOR = ElasticTensor.isotropic(1.0, 0.2), ConductivityTensor.isotropic(1.0)
+HELD = Support.layer(1, displacement=0.0, rotation=0.0)
+
+
+def plate(*supports, loads=(), material=SOLID, **options):
+    return Scene(
+        region=SQUARE,
+        spacing=0.1,
+        m=2,
+        material=material,
+        supports=supports,
+        loads=loads,
+        **options,
+    ).discretise()
+
+
+def wall(*supports):
+    return plate(*supports, material=CONDUCTOR)
+
+
+# ---- values -------------------------------------------------------------------------------------
+
+
+def test_a_number_an_array_and_a_function_say_the_same():
+    x, y = Lattice(SQUARE, 0.1, 2).points.T
+    edge = np.minimum(0.5 - np.abs(x), 0.5 - np.abs(y)) < 0.1
+    by_array = wall(Support.layer(1, temperature=2 * x[edge] + 1))
+    by_function = wall(Support.layer(1, temperature=lambda x, y: 2 * x + 1))
+    np.testing.assert_allclose(by_array.values, by_function.values, rtol=1e-15)
+    np.testing.assert_array_equal(by_array.prescribed[0], edge)
+    by_number = wall(Support.layer(1, temperature=3.0))
+    np.testing.assert_array_equal(by_number.values, np.where(edge, 3.0, 0.0)[None])
+
+
+def test_displacement_pairs_arrays_and_functions():
+    pair = plate(Support.layer(1, displacement=(1.0, -2.0), rotation=0.5))
+    edge = pair.prescribed[0]
+    np.testing.assert_array_equal(pair.values[0, edge], 1.0)
+    np.testing.assert_array_equal(pair.values[1, edge], -2.0)
+    # Rotations are kept as θ Δx.
+    np.testing.assert_allclose(pair.values[2, edge], 0.05)
+    rows = np.column_stack([np.arange(edge.sum()), -np.arange(edge.sum())])
+    array = plate(Support.layer(1, displacement=rows, rotation=0.0))
+    np.testing.assert_array_equal(array.values[:2, edge], rows.T)
+    function = plate(
+        Support.layer(1, displacement=lambda x, y: np.stack([x, y], axis=-1), rotation=0.0)
+    )
+    np.testing.assert_array_equal(function.values[:2, edge], function.lattice.points[edge].T)
+
+
+def test_rollers_hold_one_component():
+    parts = plate(
+        Support.where(lambda x, y: y < -0.4, u2=lambda x, y: x),
+        Support.where(lambda x, y: x < -0.4, u1=0.0),
+    )
+    x, y = parts.lattice.points.T
+    np.testing.assert_array_equal(parts.prescribed, [x < -0.4, y < -0.4, np.zeros(100, bool)])
+    np.testing.assert_array_equal(parts.values[1], np.where(y < -0.4, x, 0.0))
+
+
+def test_later_supports_win_where_they_overlap():
+    parts = wall(
+        Support.layer(1, temperature=1.0), Support.where(lambda x, y: x > 0, temperature=2.0)
+    )
+    x = parts.lattice.points[:, 0]
+    np.testing.assert_array_equal(parts.values[0, x > 0], 2.0)
+    edge = parts.lattice.edge_distance < 0.1
+    np.testing.assert_array_equal(parts.values[0, edge & (x < 0)], 1.0)
+    other = wall(
+        Support.where(lambda x, y: x > 0, temperature=2.0), Support.layer(1, temperature=1.0)
+    )
+    np.testing.assert_array_equal(other.values[0, edge], 1.0)
+
+
+def test_a_later_support_leaves_alone_what_it_does_not_name():
+    parts = plate(HELD, Support.where(lambda x, y: x > 0.4, u1=0.3))
+    right = parts.lattice.points[:, 0] > 0.4
+    np.testing.assert_array_equal(parts.values[0, right], 0.3)
+    np.testing.assert_array_equal(parts.values[1:, right], 0.0)
+    assert parts.prescribed[:, right].all()
+
+
+def test_a_region_selects_too():
+    parts = wall(Support.where(disc(0.2), temperature=1.0))
+    r = np.hypot(*parts.lattice.points.T)
+    np.testing.assert_array_equal(parts.prescribed[0], r <= 0.2)
+
+
+@pytest.mark.parametrize(("cells", "columns"), [(0.5, 1), (1, 1), (1.5, 2), (2.5, 3), (5.5, 5)])
+@pytest.mark.parametrize("spacing", [0.1, 0.1 * 3e-7, 7.0])
+def test_a_layer_reaches_its_depth_and_includes_the_tie(cells, columns, spacing):
+    scene = Scene(
+        region=rectangle(10 * spacing, 10 * spacing),
+        spacing=spacing,
+        m=2,
+        material=CONDUCTOR,
+        supports=[Support.layer(cells, temperature=1.0)],
+    )
+    inner = max(10 - 2 * columns, 0)
+    assert scene.discretise().prescribed.sum() == 100 - inner**2
+
+
+@pytest.mark.parametrize(
+    ("value", "components", "message"),
+    [
+        (np.ones(3), 1, "needs one value a particle for 5 particles"),
+        (np.ones((5, 3)), 2, "needs 2 values a particle for 5 particles"),
+        (lambda x, y: np.stack([x, y]), 2, "needs 2 values"),
+        (np.nan, 1, "is not finite at x = "),
+        (lambda x, y: np.where(x > 2.5, np.inf, 0.0), 1, r"is not finite at x = \(3, "),
+        (["a"] * 5, 1, "needs one value"),
+        (lambda x, y: None, 1, "needs one value|not finite"),
+        (1j, 1, "needs one value"),
+    ],
+)
+def test_values_that_do_not_fit(value, components, message):
+    points = np.column_stack([np.arange(5.0), np.zeros(5)])
+    with pytest.raises(SceneError, match=message):
+        evaluate(value, points, components, "a thing")
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Support.layer(0, temperature=1.0), "positive thickness"),
+        (lambda: Support.layer(-2, temperature=1.0), "positive thickness"),
+        (lambda: Support.layer(np.nan, temperature=1.0), "positive thickness"),
+        (lambda: Support.layer(1), "prescribes nothing"),
+        (lambda: Support.layer(1, displacement=0.0, u1=0.0), "either displacement or u1"),
+    ],
+)
+def test_bad_supports(make, message):
+    with pytest.raises(SceneError, match=message):
+        make()
+
+
+def test_a_support_of_the_other_physics():
+    with pytest.raises(SceneError, match="elastic scene has no temperature"):
+        plate(Support.layer(1, temperature=1.0))
+    with pytest.raises(SceneError, match="conductive scene has no displacement, rotation"):
+        wall(HELD)
+
+
+def test_a_support_that_holds_nothing():
+    with pytest.raises(SceneError, match="holds no particle"):
+        wall(Support.where(lambda x, y: x > 9, temperature=1.0))
+    with pytest.raises(SceneError, match="holds no particle"):
+        wall(Support.layer(0.3, temperature=1.0))
+
+
+@pytest.mark.parametrize("answer", [lambda x, y: x, lambda x, y: True, lambda x, y: x[:3] > 0])
+def test_a_selection_is_one_boolean_a_particle(answer):
+    with pytest.raises(SceneError, match="one boolean a particle"):
+        wall(Support.where(answer, temperature=1.0))
+
+
+# ---- loads --------------------------------------------------------------------------------------
+
+
+def resultant(parts, component):
+    """Force of an edge's load: on particles, or on the surface's nodes."""
+    carried = parts.load[component].sum()
+    if parts.pull is not None:
+        carried += parts.pull[component].sum()
+    return carried * parts.family.cell
+
+
+treatments = st.sampled_from(["none", "volume", "extrapolated"])
+LEFT = Support.where(lambda x, y: x < -0.2, displacement=0.0)
+
+
+@exact
+@given(st.floats(-3, 3), st.floats(-3, 3), treatments)
+def test_traction_has_its_resultant_on_an_aligned_edge(t1, t2, surface):
+    edge = Load.traction((t1, t2), (0.5, -0.5), (0.5, 0.5))
+    parts = plate(LEFT, loads=[edge], surface=surface)
+    assert resultant(parts, 0) == pytest.approx(t1, abs=1e-13)
+    assert resultant(parts, 1) == pytest.approx(t2, abs=1e-13)
+    loaded = np.abs(parts.load[:2]).sum(axis=0) > 0
+    assert parts.lattice.points[loaded, 0].min(initial=1) > 0.4
+    assert loaded.any() == (surface != "extrapolated" and (t1 != 0 or t2 != 0))
+
+
+@exact
+@given(st.floats(0.1, 1.4), treatments)
+def test_traction_has_its_resultant_on_a_slanted_edge(angle, surface):
+    c, s = np.cos(angle), np.sin(angle)
+    corners = [(0.0, 0.0), (c, s), (c - s, s + c), (-s, c)]
+    scene = Scene(
+        region=polygon(corners),
+        spacing=0.03,
+        m=2,
+        material=SOLID,
+        surface=surface,
+        supports=[Support.where(lambda x, y: c * x + s * y < 0.3, displacement=0.0)],
+        loads=[Load.traction((2.0, -1.0), corners[1], corners[2])],
+    )
+    parts = scene.discretise()
+    assert resultant(parts, 0) == pytest.approx(2.0, rel=1e-12)
+    assert resultant(parts, 1) == pytest.approx(-1.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("surface", ["none", "extrapolated"])
+def test_traction_on_a_part_of_an_edge(surface):
+    edge = Load.traction((1.0, 0.0), (0.5, -0.2), (0.5, 0.3))
+    parts = plate(LEFT, loads=[edge], surface=surface)
+    assert resultant(parts, 0) == pytest.approx(0.5)
+    if surface == "none":
+        y = parts.lattice.points[parts.load[0] > 0, 1]
+        np.testing.assert_allclose(np.sort(y), [-0.15, -0.05, 0.05, 0.15, 0.25])
+
+
+@exact
+@given(st.floats(-3, 3), st.floats(-3, 3), st.floats(-3, 3), treatments)
+def test_a_homogeneous_stress_on_all_edges_pulls_at_nothing(s11, s22, s12, surface):
+    body = rectangle(1.0, 0.7, angle=0.3) - disc(0.2)
+    load = Load.stress((s11, s22, s12))
+    parts = Scene(body, 0.05, SOLID, [HELD], [load], m=2, surface=surface).discretise()
+    assert resultant(parts, 0) == pytest.approx(0.0, abs=1e-12)
+    assert resultant(parts, 1) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_stress_on_a_part_of_the_edges_has_its_resultant():
+    load = Load.stress((2.0, 0.0, 1.0), where=lambda x, y: x > 0.499)
+    for surface in ("none", "extrapolated"):
+        parts = plate(LEFT, loads=[load], surface=surface)
+        assert resultant(parts, 0) == pytest.approx(2.0)
+        assert resultant(parts, 1) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("surface", ["none", "extrapolated"])
+def test_a_flux_carries_in_what_does_not_flow_out(surface):
+    load = Load.flux(lambda x, y: np.stack([-3.0 * x, 0 * y], axis=-1))
+    held = [Support.where(lambda x, y: x < -0.4, temperature=0.0)]
+    parts = Scene(SQUARE, 0.1, CONDUCTOR, held, [load], m=2, surface=surface).discretise()
+    # div q = −3 over the unit square.
+    assert resultant(parts, 0) == pytest.approx(3.0)
+
+
+def test_body_loads_add_up():
+    here = rectangle(0.2, 0.2)
+    loads = [
+        Load.body_force((1.0, 2.0)),
+        Load.body_force(lambda x, y: np.stack([x, 0 * y], axis=-1), where=lambda x, y: x > 0),
+        Load.couple(4.0, where=here),
+    ]
+    parts = plate(HELD, loads=loads)
+    x, y = parts.lattice.points.T
+    np.testing.assert_allclose(parts.load[0], 1.0 + np.where(x > 0, x, 0.0))
+    np.testing.assert_array_equal(parts.load[1], 2.0)
+    # Work-conjugate to θ Δx: the couple over the spacing.
+    inside = (np.abs(x) < 0.1) & (np.abs(y) < 0.1)
+    np.testing.assert_allclose(parts.load[2], np.where(inside, 40.0, 0.0))
+    heat = Scene(
+        region=SQUARE,
+        spacing=0.1,
+        m=2,
+        material=CONDUCTOR,
+        supports=[Support.layer(1, temperature=0.0)],
+        loads=[Load.source(lambda x, y: y), Load.source(1.0)],
+    ).discretise()
+    np.testing.assert_allclose(heat.load[0], 1 + y)
+
+
+def test_loads_of_the_other_physics():
+    for load in (Load.body_force((1.0, 0.0)), Load.couple(1.0)):
+        with pytest.raises(SceneError, match=r"(force|couple) does not act on an? conductive"):
+            Scene(SQUARE, 0.1, CONDUCTOR, loads=[load])
+    with pytest.raises(SceneError, match="source does not act on an elastic"):
+        Scene(SQUARE, 0.1, SOLID, loads=[Load.source(1.0)])
+    with pytest.raises(SceneError, match="inflow does not act on an elastic"):
+        Scene(SQUARE, 0.1, SOLID, loads=[Load.flux((1.0, 0.0))])
+    with pytest.raises(SceneError, match="traction does not act on a conductive"):
+        Scene(SQUARE, 0.1, CONDUCTOR, loads=[Load.stress((1.0, 0.0, 0.0))])
+
+
+def test_a_couple_needs_shear_stiffness():
+    with pytest.raises(SceneError, match="do not resist rotation"):
+        plate(HELD, loads=[Load.couple(1.0)], material=ElasticTensor.isotropic(1.0, 1 / 3))
+
+
+def test_loads_that_act_on_nothing():
+    with pytest.raises(SceneError, match="a force acts on no particle"):
+        plate(HELD, loads=[Load.body_force((1.0, 0.0), where=lambda x, y: x > 5)])
+    with pytest.raises(SceneError, match="no edge of the body runs along"):
+        plate(HELD, loads=[Load.traction((1.0, 0.0), (3.0, 0.0), (3.0, 1.0))])
+
+
+def test_edge_loads_that_act_nowhere():
+    with pytest.raises(SceneError, match="no point of the edge is selected"):
+        plate(HELD, loads=[Load.stress((1.0, 0.0, 0.0), where=lambda x, y: x > 5)])
+    with pytest.raises(SceneError, match="one boolean a point"):
+        plate(HELD, loads=[Load.stress((1.0, 0.0, 0.0), where=lambda x, y: x)])
+
+
+def test_loads_that_do_not_fit():
+    with pytest.raises(SceneError, match="a traction needs 2 values"):
+        plate(HELD, loads=[Load.traction((1.0, 0.0, 0.0), (0.5, -0.5), (0.5, 0.5))])
+    with pytest.raises(SceneError, match="a body force is not finite"):
+        plate(HELD, loads=[Load.body_force((np.nan, 0.0))])
