@@ -290,3 +290,19 @@ class Case:
         """Every (method, resolution) of a level, coarse ones first."""
         pairs = [(m, n) for m in self.methods for n in m.resolutions.get(level, ())]
         yield from sorted(pairs, key=lambda pair: pair[1])
+
+
+@dataclass(frozen=True)
+class Failed:
+    """A method that raised, or a worker that died, at one resolution."""
+
+    error: str
+    message: str
+    traceback: str = ""
+
+
+Outcome = Measurement | Failed
+
+
+#: What is known of one case: method name -> resolution -> outcome.
+Outcomes = Mapping[str, Mapping[int, Outcome]]

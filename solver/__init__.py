@@ -13,15 +13,20 @@ from .errors import (
     SceneError,
     ToughnessError,
 )
-from .fracture.programme import Programme
-from .fracture.toughness import Toughness
-from .geometry.regions import Crack, Region, disc, polygon, rectangle
-from .material.family import Family
-from .material.influence import Influence
-from .material.laws import Cosine, Fourfold, TwoHarmonic, UniformShear
-from .material.tensors import ConductivityTensor, ElasticTensor
-from .problem.conditions import Load, Support
-from .scene import Discretisation, Scene
+from .fracture import Programme, Toughness
+from .geometry import Crack, Region, disc, polygon, rectangle
+from .material import (
+    ConductivityTensor,
+    Cosine,
+    ElasticTensor,
+    Family,
+    Fourfold,
+    Influence,
+    TwoHarmonic,
+    UniformShear,
+)
+from .problem import Discretisation, Load, Support
+from .scene import Scene
 from .solution import Solution, Statistics
 
 __all__ = [

@@ -9,6 +9,10 @@ class CalibrationError(ValueError):
     """No micromoduli of the wanted kind reproduce the given tensor on the given family."""
 
 
+class NotRepresentableError(CalibrationError):
+    """No non-negative bond moduli make the tensor on this family; another m may have them."""
+
+
 class InadmissibleMaterialError(ValueError):
     """The condensed symbol is negative at some wave vector: the solid is unstable in bulk."""
 

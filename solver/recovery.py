@@ -14,11 +14,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from .fracture import crack_path
-from .material.calibration import ConductiveModuli, ElasticModuli
+from . import bonds as bond_room
+from .arrays import Array
+from .material import ConductiveModuli, ElasticModuli
 from .solution import Solution
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -277,9 +276,9 @@ def strain_energy_density(solution: Solution) -> Array:
 
 def damage(solution: Solution) -> Array:
     """Share of each particle's family that is cut or broken (Eq. 105), shape (N,); see
-    `solver.fracture.crack_path.damage`. NaN at parts that were set aside.
+    `solver.bonds.damage`. NaN at parts that were set aside.
     """
-    return _aside(solution, crack_path.damage(solution.discretisation.bonds))
+    return _aside(solution, bond_room.damage(solution.discretisation.bonds))
 
 
 def displacement_gradient(solution: Solution) -> Array:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator
 
-if TYPE_CHECKING:
-    from .scene import Discretisation, Scene
-
-Array = NDArray[np.float64]
+from .arrays import Array
+from .problem import Description, Discretisation
 
 
 @dataclass(frozen=True)
@@ -73,7 +71,7 @@ class Solution:
     preconditioner: LinearOperator | None = field(default=None, repr=False)
 
     @property
-    def scene(self) -> Scene:
+    def scene(self) -> Description:
         """The scene that was solved."""
         return self.discretisation.scene
 

@@ -13,7 +13,7 @@ LADDER = dict.fromkeys(Level, tuple(COUNTS))
 def count(n: int) -> Measurement:
     """Particles of the solver's lattice in a disc of radius a at spacing a/n."""
     from solver import disc
-    from solver.geometry.lattice import Lattice
+    from solver.geometry import Lattice
 
     lattice = Lattice(disc(1.0), 1.0 / n, 5)
     return Measurement(lattice.count, {"particles": float(lattice.count)})

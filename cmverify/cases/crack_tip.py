@@ -33,8 +33,8 @@ from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
     from solver import Solution
-    from solver.bonds.volume_method import Surface
-    from solver.material.calibration import Calibration
+    from solver.bonds import Surface
+    from solver.material import Calibration
 
 #: C1111 = C, C2222 = 4C/5, C1122 = C/5, C1212 = C/3, C1112 = C/10, C2212 = C/6; order 11, 22, 12.
 STIFFNESS = (

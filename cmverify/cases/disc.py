@@ -32,7 +32,7 @@ from cmverify.cases.common import adapters
 from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
-    from solver.material.calibration import Calibration
+    from solver.material import Calibration
 
 CONDUCTIVITY = ((5.0, 2.0), (2.0, 1.0))  # Eq. 168, W/(m K)
 EXPONENT = 34  # of the cos^n law, as in the paper
@@ -61,7 +61,7 @@ class Problem:
 def bond(problem: Problem, calibration: Calibration, n: int) -> Measurement:
     """Solve with the bond solver at spacing a/n and compare with the closed form."""
     from solver import ConductivityTensor, Load, Scene, Support, disc, recovery
-    from solver.material.laws import Cosine
+    from solver.material import Cosine
 
     exact = problem.exact()
     scene = Scene(

@@ -18,7 +18,7 @@ from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measuremen
 
 if TYPE_CHECKING:
     from solver import Family, Toughness
-    from solver.fracture.toughness import ToughnessCalibration
+    from solver.fracture import ToughnessCalibration
 
 AngularFunction = Callable[[Array], Array]
 

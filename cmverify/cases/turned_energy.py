@@ -29,7 +29,7 @@ from cmverify.cases.common import materials
 from cmverify.cases.common.bond_energies import energy_of_strain
 
 if TYPE_CHECKING:
-    from solver.material.calibration import Calibration
+    from solver.material import Calibration
 
 #: The solids of Fig. 4, C1111 = C2222 = 1; the second is also that of Fig. 2.
 SOLIDS = {
@@ -63,7 +63,7 @@ def energy_ratio(voigt: Array, turning: Turning, m: int) -> Array:
     for no calibration couples it to homogeneous strain.
     """
     from solver import ElasticTensor, Family
-    from solver.material.calibration import ElasticModuli, calibrate
+    from solver.material import ElasticModuli, calibrate
 
     family = Family(m, 1.0 / m)
     given = voigt.copy()

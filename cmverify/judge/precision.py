@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cmverify.case import Case, Measurement
+from cmverify.case import Case, Measurement, Outcomes
 from cmverify.judge.convergence import fitted_order
-from cmverify.judge.verdict import Outcomes
 
 
 @dataclass(frozen=True)

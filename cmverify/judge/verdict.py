@@ -7,24 +7,10 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
-from cmverify.case import Case, Check, Measurement
+from cmverify.case import Case, Check, Failed, Measurement, Outcome, Outcomes
 from cmverify.judge.convergence import fitted_order, observed_orders
 
 Kind = Literal["ran", "bound", "equal", "order"]
-
-
-@dataclass(frozen=True)
-class Failed:
-    """A method that raised, or a worker that died, at one resolution."""
-
-    error: str
-    message: str
-    traceback: str = ""
-
-
-Outcome = Measurement | Failed
-#: What is known of one case: method name -> resolution -> outcome.
-Outcomes = Mapping[str, Mapping[int, Outcome]]
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from cmverify.case import Case, Check, Measurement
+from cmverify.case import Case, Check, Failed, Measurement, Outcome
 from cmverify.judge import precision
 from cmverify.judge.convergence import observed_orders
-from cmverify.judge.verdict import Failed, Outcome, Verdict, judge, unjudged
+from cmverify.judge.verdict import Verdict, judge, unjudged
 from cmverify.run import results
 
 

@@ -19,8 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from cmverify.case import Curve, Field, FieldSet, LinePlot, Measurement
-from cmverify.judge.verdict import Failed, Outcome
+from cmverify.case import Curve, Failed, Field, FieldSet, LinePlot, Measurement, Outcome
 
 FORMAT = 1
 CURVE = ("abscissa", "computed", "reference", "reference_abscissa")

@@ -18,8 +18,7 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 
-from cmverify.case import Case, Level
-from cmverify.judge.verdict import Failed
+from cmverify.case import Case, Failed, Level
 from cmverify.run import results
 from cmverify.run.threads import thread_environment, threads_per_worker
 from cmverify.run.worker import serve

@@ -9,8 +9,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from weakref import WeakSet
 
-from cmverify.case import Case, Measurement, Method
-from cmverify.judge.verdict import Failed, Outcome
+from cmverify.case import Case, Failed, Measurement, Method, Outcome
 from cmverify.run import results
 
 _warm: WeakSet[Callable[[], None]] = WeakSet()

@@ -17,17 +17,13 @@ from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 from scipy.spatial import KDTree
 
+from ..arrays import Array, Indices, Mask
 from ..errors import SceneError
-from ..geometry.lattice import Lattice
-from ..geometry.outline import Outline, apart
-from ..geometry.regions import Crack
-from ..material.family import Family
+from ..geometry import Crack, Lattice, Outline
+from ..geometry.outline import apart
+from ..material import Family
 from .ended import EndedBonds
 from .volume_method import Surface, full_volume, volume_factor
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Indices = NDArray[np.int64]
 
 # Share of the spacing within which a point counts as lying on a crack.
 _TIE = 1e-9
@@ -327,3 +323,21 @@ class Bonds:
         """Memory of everything stored for single bonds."""
         ended = 0 if self.ended is None else self.ended.nbytes
         return int(self.factors.nbytes + self.special.nbytes + self.short.nbytes + ended)
+
+
+def damage(bonds: Bonds) -> Array:
+    """Share of each particle's family that is cut or broken (Eq. 105), shape (N,).
+
+    Neighbours count by their area fractions. Those that the body's edge leaves out are not part
+    of the family; cuts by the scene's cracks count as damage.
+    """
+    family, count = bonds.family, bonds.lattice.count
+    result = np.zeros(count)
+    special = bonds.special
+    if len(special):
+        exist = bonds.exist(special)
+        gone = exist & (bonds.factors == 0)
+        whole = np.einsum("o,on->n", family.fraction, exist.astype(np.float64))
+        lost = np.einsum("o,on->n", family.fraction, gone.astype(np.float64))
+        result[special] = lost / np.where(whole > 0, whole, 1.0)
+    return result

@@ -41,15 +41,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..geometry.lattice import Lattice
-from ..geometry.outline import Outline
-from ..material.family import Family
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Indices = NDArray[np.int64]
+from ..arrays import Array, Indices, Mask
+from ..geometry import Lattice, Outline
+from ..material import Family
 
 # Share of the spacing below which a bond's stiffness grows no more, and a chord does not count.
 SHORTEST = 0.1

@@ -8,12 +8,9 @@ from __future__ import annotations
 
 from typing import Literal, get_args
 
-import numpy as np
-from numpy.typing import NDArray
+from ..arrays import Array
+from ..material import Family
 
-from ..material.family import Family
-
-Array = NDArray[np.float64]
 Surface = Literal["none", "volume", "extrapolated"]
 
 

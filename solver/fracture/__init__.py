@@ -1,6 +1,9 @@
 """Bonds break, the body finds a new equilibrium, cracks grow."""
 
+from .crack_path import CrackPath
 from .growth import Growth
+from .programme import Programme
 from .quasistatic import grow
+from .toughness import Toughness, ToughnessCalibration
 
-__all__ = ["Growth", "grow"]
+__all__ = ["CrackPath", "Growth", "Programme", "Toughness", "ToughnessCalibration", "grow"]

@@ -13,18 +13,16 @@ from __future__ import annotations
 from typing import Literal, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, Indices, Mask
 from ..errors import SceneError
-from ..material.calibration import ElasticModuli
-from ..material.family import Family
-from ..problem.conditions import Where, select
-from ..scene import Discretisation
+from ..geometry import Where, select
+from ..material import ElasticModuli, Family
+from ..operators import segments
+from ..problem import Discretisation
 from . import bond_kernels
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Indices = NDArray[np.int64]
 Criterion = Literal["total", "axial"]
 
 # Utilisations that differ by less than this share are one event: mirror images break together,
@@ -137,11 +135,9 @@ class Breakable:
         self._steps = (dy * row + dx).astype(np.uint64)
         rows, columns = lattice.cells
         self._cells = rows * row + columns
-        new = np.ones(lattice.count, dtype=bool)
-        new[1:] = (rows[1:] != rows[:-1]) | (columns[1:] != columns[:-1] + 1)
-        first = np.nonzero(new)[0]
-        size = np.diff(np.append(first, lattice.count))
-        self._segments = np.column_stack([self._cells[first], size, first]).astype(np.uint64)
+        everybody = np.arange(lattice.count)
+        runs = segments.runs(lattice, everybody, np.zeros_like(everybody))
+        self._segments = np.column_stack(runs).astype(np.uint64)
         self._number = lattice.number()
         #: Factor of every bond as it was at the start, 0 where there is none, (half, N).
         self.whole: Array = np.stack([discretisation.bonds.factor(o) for o in range(half)])

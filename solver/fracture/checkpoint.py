@@ -17,8 +17,8 @@ import numpy as np
 from scipy import sparse
 
 from ..errors import SceneError
-from ..linear.two_level import TwoLevel
-from ..operators.bond_operator import BondOperator
+from ..linear import TwoLevel, method
+from ..operators import BondOperator
 
 if TYPE_CHECKING:
     from .growth import Growth
@@ -115,7 +115,7 @@ def load(run: Growth, path: str | os.PathLike[str], mark: str) -> bool:
     if "coarse_data" in found:
         # The preconditioner belongs to the bonds there were when it was built.
         body.break_bonds(*bonds.ends(gone[:built]))
-        operator: BondOperator = body.positive()
+        operator: BondOperator = method.positive(body.operator, body.sign)
         parts = (found["coarse_data"], found["coarse_indices"], found["coarse_indptr"])
         coarse = sparse.csc_array(parts, shape=(len(parts[2]) - 1,) * 2)
         body.preconditioner = TwoLevel(operator, int(found["coarse_cells"]), coarse=coarse)

@@ -13,16 +13,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
-from ..bonds.bonds import Bonds
-from ..geometry.regions import Crack, Region
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from ..arrays import Array
+from ..geometry import Crack, Region
 
 #: Longest bond that marks the path, in cells.
 SHORT = np.sqrt(2.0) * (1 + 1e-9)
@@ -124,21 +120,3 @@ def trace(starts: Array, marks: Array, spacing: float) -> list[CrackPath]:
         points[-1] = nodes[last].mean(axis=0)
         paths.append(CrackPath(points))
     return sorted(paths, key=lambda path: -path.advance)
-
-
-def damage(bonds: Bonds) -> Array:
-    """Share of each particle's family that is cut or broken (Eq. 105), shape (N,).
-
-    Neighbours count by their area fractions. Those that the body's edge leaves out are not part
-    of the family; cuts by the scene's cracks count as damage.
-    """
-    family, count = bonds.family, bonds.lattice.count
-    result = np.zeros(count)
-    special = bonds.special
-    if len(special):
-        exist = bonds.exist(special)
-        gone = exist & (bonds.factors == 0)
-        whole = np.einsum("o,on->n", family.fraction, exist.astype(np.float64))
-        lost = np.einsum("o,on->n", family.fraction, gone.astype(np.float64))
-        result[special] = lost / np.where(whole > 0, whole, 1.0)
-    return result

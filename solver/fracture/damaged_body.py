@@ -11,24 +11,17 @@ from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator
 from threadpoolctl import threadpool_limits
 
-from ..analyses.statics import preconditioner
-from ..bonds.bonds import Bonds
+from ..arrays import Array, Indices, Mask
+from ..bonds import Bonds
 from ..errors import ConvergenceError, MechanismError
-from ..linear.krylov import Task, condensed_gradients, conjugate_gradients
-from ..linear.two_level import TwoLevel
-from ..operators.bond_operator import BondOperator
-from ..problem import mechanisms
+from ..linear import Task, TwoLevel, method
+from ..operators import BondOperator
+from ..problem import Discretisation, mechanisms
 from ..problem.rigid import unheld
-from ..scene import Discretisation
 from ..solution import Solution, Statistics
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Indices = NDArray[np.int64]
 
 # Iterations above those that a fresh preconditioner would have taken after which it is brought up
 # to date.
@@ -216,11 +209,7 @@ class Equilibrium:
 
     def hinged(self) -> Indices:
         """Particles that can move without straining a bond (slow: only after a failed solve)."""
-        return mechanisms.zero_energy_particles(self.positive())
-
-    def positive(self) -> BondOperator:
-        """The operator, or its positive companion if it is indefinite."""
-        return self.operator.companion() if self.sign == "indefinite" else self.operator
+        return mechanisms.zero_energy_particles(method.positive(self.operator, self.sign))
 
     # ---- solving ------------------------------------------------------------------------
 
@@ -250,7 +239,9 @@ class Equilibrium:
             before = self.x
             left = rhs - operator.matvec(before)
             refreshed = self._prepare()
-            self.x, iterations = self._iterate(rhs, before, tolerance)
+            task = Task(rhs, before, tolerance, self.max_iterations)
+            assert self.preconditioner is not None
+            self.x, iterations = method.iterate(operator, self.sign, self.preconditioner, task)
             right = rhs - operator.matvec(self.x)
             size, after = float(np.linalg.norm(rhs)), float(np.linalg.norm(right))
             residual = after / size if size else 0.0
@@ -276,17 +267,8 @@ class Equilibrium:
         if isinstance(known, TwoLevel):
             if not self.worn:
                 return False
-            self.preconditioner = known.updated(self.positive())
+            self.preconditioner = known.updated(method.positive(self.operator, self.sign))
         else:
-            self.preconditioner = preconditioner(self.operator, self.sign, "auto")
+            self.preconditioner = method.preconditioner(self.operator, self.sign)
         self.built = self.gone
         return True
-
-    def _iterate(self, rhs: Array, start: Array, tolerance: float) -> tuple[Array, int]:
-        assert self.preconditioner is not None
-        task = Task(rhs, start, tolerance, self.max_iterations)
-        if not rhs.any():
-            return np.zeros_like(rhs), 0
-        if self.sign == "indefinite":
-            return condensed_gradients(self.operator, self.preconditioner, task)
-        return conjugate_gradients(self.operator, self.preconditioner, task)

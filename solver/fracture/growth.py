@@ -11,9 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import Array, Indices, Mask
+from ..bonds import damage
 from ..errors import ConvergenceError, NegativeCurvatureError, SceneError
-from ..problem.conditions import Where
-from ..scene import Discretisation, Scene
+from ..geometry import Where
+from ..problem import Discretisation
+from ..scene import Scene
 from ..solution import Solution
 from . import crack_path
 from .breaking import TIE, Breakable, Criterion, Critical, next_batch
@@ -21,10 +24,6 @@ from .crack_path import CrackPath
 from .damaged_body import Equilibrium
 from .ledger import History, Ledger
 from .programme import Programme
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Indices = NDArray[np.int64]
 
 # Share of the bonds that a straight cut breaks per cell of its length: the default batch. Larger
 # and smaller ones (0.03 to 0.4) give the same paths and loads.
@@ -125,7 +124,7 @@ class Growth:
     @property
     def damage(self) -> Array:
         """Damage of every particle (Eq. 105), cuts by the scene's cracks included, shape (N,)."""
-        return crack_path.damage(self.body.bonds)
+        return damage(self.body.bonds)
 
     @property
     def midpoints(self) -> Array:

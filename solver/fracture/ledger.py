@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from .breaking import Breakable
 from .damaged_body import Equilibrium, Step
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 
 class Ledger:

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import MechanismError, SceneError
-from ..problem.conditions import Where
+from ..geometry import Where
 from ..scene import Scene
 from . import checkpoint as state_file
 from .breaking import Criterion, Critical

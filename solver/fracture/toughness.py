@@ -15,14 +15,13 @@ from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.special import binom
 
+from ..arrays import Array
 from ..errors import ToughnessError
-from ..material.family import Family
-from ..material.influence import CONSTANT, Influence
+from ..material import CONSTANT, Family, Influence
 
-Array = NDArray[np.float64]
 ToughnessCalibration = Literal["lattice", "continuum", "even"]
 
 #: Largest exponent that is searched for a ratio: sharper lobes than any family resolves.

@@ -1,1 +1,20 @@
 """Bodies: regions, their particles, their outline, and every question of place."""
+
+from .edge_quadrature import Quadrature
+from .lattice import Lattice, select
+from .outline import Outline
+from .regions import Crack, Point, Region, Where, disc, polygon, rectangle
+
+__all__ = [
+    "Crack",
+    "Lattice",
+    "Outline",
+    "Point",
+    "Quadrature",
+    "Region",
+    "Where",
+    "disc",
+    "polygon",
+    "rectangle",
+    "select",
+]

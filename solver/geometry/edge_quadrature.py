@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, Mask
 from ..errors import SceneError
 from .outline import Outline
-from .regions import Region
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Where = Region | Callable[[Array, Array], Any]
+from .regions import Region, Where
 
 # Quadrature points on an edge of the outline: closer than the particles, which may have to carry
 # each its own share.

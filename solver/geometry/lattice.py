@@ -14,12 +14,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, Indices, Mask
 from ..errors import SceneError
-from .regions import Region
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Indices = NDArray[np.int64]
+from .regions import Region, Where
 
 # Refuse grids whose index arithmetic or memory nobody meant to ask for.
 _LARGEST_GRID = 200_000_000
@@ -129,3 +126,14 @@ class Lattice:
         grid = np.zeros((*values.shape[:-1], *self.shape))
         grid[..., self.mask] = values
         return grid
+
+
+def select(lattice: Lattice, where: Where) -> Mask:
+    """Particles in a region, or those for which ``where(x, y)`` is true, shape (N,)."""
+    x, y = lattice.points.T
+    if isinstance(where, Region):
+        return where.contains(x, y)
+    selected = np.asarray(where(x, y))
+    if selected.dtype != bool or selected.shape != x.shape:
+        raise SceneError("a selection must return one boolean a particle")
+    return selected

@@ -15,11 +15,9 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from ..errors import SceneError
 from .regions import Crack, Region
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # Vertices nearer to each other than this share of the step become one.
 _CLOSE = 0.3

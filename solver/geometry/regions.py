@@ -7,17 +7,18 @@ through shapely. Shapes combine by subtraction, which is what holes and notches 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import SceneError
 
-Array = NDArray[np.float64]
 Point = tuple[float, float]
 
 # Points nearer to a polygon's edge than this share of its size lie on it.
@@ -223,3 +224,7 @@ class Crack:
     def segments(self) -> tuple[tuple[Point, Point], ...]:
         """Its straight pieces."""
         return tuple(pairwise(self.points))
+
+
+#: A part of the plane: a region, or a function of the coordinates that says yes or no.
+Where = Region | Callable[[Array, Array], Any]

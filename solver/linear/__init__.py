@@ -1,1 +1,8 @@
 """Krylov methods and the two-level preconditioner, for every analysis."""
+
+from .coarse import Hats
+from .condensed import Condensed
+from .krylov import Task
+from .two_level import BlockJacobi, TwoLevel
+
+__all__ = ["BlockJacobi", "Condensed", "Hats", "Task", "TwoLevel"]

@@ -18,11 +18,8 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from ..operators import kernels
-from ..operators.bond_operator import BondOperator
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+from ..arrays import Array, Indices
+from ..operators import BondOperator, kernels
 
 # Hats a node at most; a support in more pieces than this is rubble.
 _PIECES = 4

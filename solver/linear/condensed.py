@@ -9,14 +9,11 @@ assembling anything.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, cg
 
+from ..arrays import Array
 from ..errors import NegativeCurvatureError
-from ..operators import kernels
-from ..operators.bond_operator import BondOperator
-
-Array = NDArray[np.float64]
+from ..operators import BondOperator, kernels
 
 # Inner solves must not disturb the outer conjugacy.
 _INNER = 1e-13

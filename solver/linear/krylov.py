@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, cg
 
+from ..arrays import Array
 from ..errors import NegativeCurvatureError
-from ..operators.bond_operator import BondOperator
+from ..operators import BondOperator
 from .condensed import Condensed
-
-Array = NDArray[np.float64]
 
 # Krylov recurrences drift from the true residual: restarts from the current solution repair it.
 _RESTARTS = 6

@@ -23,12 +23,10 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, splu
 
+from ..arrays import Array
 from ..errors import NegativeCurvatureError
-from ..operators import kernels
-from ..operators.bond_operator import BondOperator
+from ..operators import BondOperator, kernels
 from .coarse import Hats
-
-Array = NDArray[np.float64]
 
 # Distance of coarse nodes by unknowns a particle: with two products of smoothing the best
 # balance of set-up and iterations from 4 to 12 cells. In conduction the coarse matrix is cheap

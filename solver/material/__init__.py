@@ -1,1 +1,54 @@
 """Solids and bonds: tensors, families, laws, calibrated moduli, and which of them are stable."""
+
+from .admission import calibrated, remedy, require_admissible
+from .calibration import Calibration, calibrate, representable, representable_by_directions
+from .family import AreaRule, Family
+from .influence import CONSTANT, Influence
+from .laws import AngularLaw, Cosine, Fourfold, TwoHarmonic, UniformShear
+from .moduli import (
+    ConductiveModuli,
+    ElasticModuli,
+    Moduli,
+    bond_weights,
+    effective_tensor,
+    stretch_rows,
+)
+from .stability import Stability, assess
+from .symbol import acoustic_tensor, brillouin_zone, condensed_symbol, margins
+from .tensors import ConductivityTensor, ElasticTensor, Material, Plane, stress_rotation
+
+__all__ = [
+    "CONSTANT",
+    "AngularLaw",
+    "AreaRule",
+    "Calibration",
+    "ConductiveModuli",
+    "ConductivityTensor",
+    "Cosine",
+    "ElasticModuli",
+    "ElasticTensor",
+    "Family",
+    "Fourfold",
+    "Influence",
+    "Material",
+    "Moduli",
+    "Plane",
+    "Stability",
+    "TwoHarmonic",
+    "UniformShear",
+    "acoustic_tensor",
+    "assess",
+    "bond_weights",
+    "brillouin_zone",
+    "calibrate",
+    "calibrated",
+    "condensed_symbol",
+    "effective_tensor",
+    "margins",
+    "remedy",
+    "representable",
+    "representable_by_directions",
+    "require_admissible",
+    "stress_rotation",
+    "stretch_rows",
+]

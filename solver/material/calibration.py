@@ -21,102 +21,34 @@ so the energy per volume of a bulk particle makes the lattice an elastic solid o
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..errors import CalibrationError
+from ..arrays import Array
+from ..errors import CalibrationError, NotRepresentableError
 from .family import Family
 from .laws import AngularLaw, UniformShear, default_law
+from .moduli import (
+    PAIRS2,
+    PAIRS3,
+    ConductiveModuli,
+    ElasticModuli,
+    Moduli,
+    bond_weights,
+    conductive_moments,
+    elastic_moments,
+    stretch_rows,
+)
 from .positive import closest, feasible
 from .tensors import ConductivityTensor, ElasticTensor, Material
 
-Array = NDArray[np.float64]
 Calibration = Literal["continuum", "lattice", "positive"]
 
-_PAIRS3 = ([0, 1, 0, 2, 0, 1], [0, 1, 1, 2, 2, 2])
-_PAIRS2 = ([0, 1, 0], [0, 1, 1])
 # Largest relative error of the moments with which a law still counts as exact.
 _EXACT = 1e-10
 # A shear modulus below this share of the largest axial one is rounding.
 _NO_SHEAR = 1e-12
-
-
-@dataclass(frozen=True, eq=False)
-class ElasticModuli:
-    """k_n and k_t of every bond of the family, shapes (n,), N/m⁵ per unit thickness."""
-
-    normal: Array
-    shear: Array
-
-    @property
-    def has_shear(self) -> bool:
-        """Whether any bond resists shear; if none does, rotations have no stiffness."""
-        return bool(np.any(self.shear != 0.0))
-
-    @property
-    def non_negative(self) -> bool:
-        """Whether no bond has a negative modulus."""
-        return bool(self.normal.min() >= 0 and self.shear.min() >= 0)
-
-
-@dataclass(frozen=True, eq=False)
-class ConductiveModuli:
-    """k of every bond of the family, shape (n,), W/(m K) per m² and unit thickness."""
-
-    conductivity: Array
-
-    @property
-    def non_negative(self) -> bool:
-        """Whether no bond has a negative modulus."""
-        return bool(self.conductivity.min() >= 0)
-
-
-Moduli = ElasticModuli | ConductiveModuli
-
-
-def stretch_rows(psi: Array) -> tuple[Array, Array]:
-    """v_s and v_γ at angles ψ, each of shape (3, n)."""
-    c, s = np.cos(psi), np.sin(psi)
-    return np.array([c * c, s * s, c * s]), np.array([-c * s, c * s, 0.5 * (c * c - s * s)])
-
-
-def elastic_moments(psi: Array) -> tuple[Array, Array]:
-    """Products v vᵀ in the order 11, 22, 12, 66, 16, 26 for k_n and for k_t, each (6, n)."""
-    stretch, shear = stretch_rows(psi)
-    a, b = _PAIRS3
-    return stretch[a] * stretch[b], shear[a] * shear[b]
-
-
-def conductive_moments(psi: Array) -> Array:
-    """Products n nᵀ in the order 11, 22, 12, shape (3, n)."""
-    n = np.array([np.cos(psi), np.sin(psi)])
-    a, b = _PAIRS2
-    return n[a] * n[b]
-
-
-def bond_weights(family: Family, material: Material) -> Array:
-    """½ α Λ |ξ| Δv (elasticity) or ½ α Λ Δv (conduction) of each bond, shape (n,)."""
-    weight = 0.5 * family.weight * family.cell
-    return weight * family.length if isinstance(material, ElasticTensor) else weight
-
-
-def effective_tensor(family: Family, moduli: Moduli) -> Array:
-    """The tensor that the lattice sums make: C with rotations condensed (3×3), or D (2×2)."""
-    if isinstance(moduli, ConductiveModuli):
-        weight = 0.5 * family.weight * family.cell * moduli.conductivity
-        return np.einsum("o,oi,oj->ij", weight, family.normal, family.normal)
-    weight = 0.5 * family.weight * family.cell * family.length
-    stretch, shear = stretch_rows(family.angle)
-    axial, transverse = weight * moduli.normal, weight * moduli.shear
-    tensor = (axial * stretch) @ stretch.T + (transverse * shear) @ shear.T
-    stiffness = transverse.sum()
-    coupling = shear @ transverse
-    if abs(stiffness) > 0 and np.abs(coupling).max() > 0:
-        tensor = tensor - np.outer(coupling, coupling) / stiffness
-    return tensor
 
 
 def calibrate(
@@ -124,7 +56,6 @@ def calibrate(
     material: Material,
     calibration: Calibration = "lattice",
     law: AngularLaw | None = None,
-    explain: bool = True,
 ) -> Moduli:
     """Bond moduli of `material` on `family`.
 
@@ -137,9 +68,6 @@ def calibrate(
         By default Cosine in conduction and the paper's two-harmonic law in elasticity, but for
         ``lattice`` UniformShear where the two-harmonic k_t would take both signs (its rotation
         block could then be singular).
-    explain : bool
-        Whether the error of ``positive`` shall look for what would do instead, which takes some
-        tenths of a second.
 
     Returns
     -------
@@ -148,9 +76,11 @@ def calibrate(
     Raises
     ------
     CalibrationError
-        If the law has no member with the tensor's moments, or (``positive``) no non-negative
-        moduli exist on this family; the message says which m would do, or that none will, and
-        what to use instead.
+        If the law has no member with the tensor's moments, or no non-negative moduli exist for
+        the tensor at all.
+    NotRepresentableError
+        If they exist, but not on this family. `solver.material.admission.calibrated` says what
+        would do instead.
     """
     if calibration not in get_args(Calibration):
         raise ValueError(
@@ -158,12 +88,12 @@ def calibrate(
         )
     chosen, law = law, default_law(material) if law is None else law
     if isinstance(material, ElasticTensor):
-        moduli = _elastic(family, material, calibration, law, explain)
+        moduli = _elastic(family, material, calibration, law)
         mixed = moduli.shear.min() < 0 < moduli.shear.max()
         if chosen is None and calibration == "lattice" and mixed:
-            moduli = _elastic(family, material, calibration, UniformShear(), explain)
+            moduli = _elastic(family, material, calibration, UniformShear())
         return moduli
-    return _conductive(family, material, calibration, law, explain)
+    return _conductive(family, material, calibration, law)
 
 
 def _solve(system: Array, target: Array, what: str) -> Array:
@@ -192,9 +122,8 @@ def _elastic(
     material: ElasticTensor,
     calibration: Calibration,
     law: AngularLaw,
-    explain: bool,
 ) -> ElasticModuli:
-    target = material.voigt[_PAIRS3]
+    target = material.voigt[PAIRS3]
     psi = family.angle
     weight = bond_weights(family, material)
     name = type(law).__name__
@@ -209,14 +138,11 @@ def _elastic(
         radial = 0.5 * family.horizon**3 * family.influence.moment(2)
         mean = 2 * np.pi / len(circle)
         system = radial * mean * (moments_n @ basis_n.T + moments_t @ basis_t.T)
-    try:
-        coefficients = _solve(system, target, f"{name} law ({calibration})")
-    except CalibrationError as error:
-        raise CalibrationError(f"{error}. {_instead(family, material, explain)}".rstrip()) from None
+    coefficients = _solve(system, target, f"{name} law ({calibration})")
     basis_n, basis_t = law.elastic(psi, material)
     normal, shear = coefficients @ basis_n, coefficients @ basis_t
     if calibration == "positive":
-        normal, shear = _positive_elastic(family, material, normal, shear, explain)
+        normal, shear = _positive_elastic(family, material, normal, shear)
     # Rounding must not give rotations a stiffness that no bond has (ν = 1/3 in plane stress).
     tiny = _NO_SHEAR * np.abs(normal).max()
     if np.abs(shear).max() <= tiny:
@@ -225,7 +151,7 @@ def _elastic(
 
 
 def _positive_elastic(
-    family: Family, material: ElasticTensor, normal: Array, shear: Array, explain: bool
+    family: Family, material: ElasticTensor, normal: Array, shear: Array
 ) -> tuple[Array, Array]:
     c = material.voigt
     difference = c[2, 2] - c[0, 1]
@@ -233,7 +159,7 @@ def _positive_elastic(
         raise CalibrationError(
             f"no non-negative bond moduli exist for this solid at any m: their shear parts sum to "
             f"4 (C66 − C12) = {4 * difference:.6g} < 0 (ν > 1/3 for an isotropic solid in plane "
-            f"stress). {_instead(family, material, explain)}"
+            f"stress)"
         )
     half = family.size // 2
     scale_n = np.maximum(np.abs(normal[:half]), 0.05 * np.abs(normal).max())
@@ -243,7 +169,7 @@ def _positive_elastic(
     wanted = np.concatenate([normal[:half], shear[:half]]) / scale
     found = closest(moments * scale, target, np.maximum(wanted, 0.0))
     if found is None:
-        raise CalibrationError(_no_positive(family, material, explain))
+        raise _not_on(family)
     found = found * scale
     return np.tile(found[:half], 2), np.tile(found[half:], 2)
 
@@ -254,12 +180,12 @@ def _positive_system(family: Family, material: Material) -> tuple[Array, Array]:
     psi = family.angle[:half]
     weight = 2 * bond_weights(family, material)[:half]
     if isinstance(material, ConductivityTensor):
-        return weight * conductive_moments(psi), material.matrix[_PAIRS2]
+        return weight * conductive_moments(psi), material.matrix[PAIRS2]
     moments_n, moments_t = elastic_moments(psi)
     decoupled = weight * stretch_rows(psi)[1][1:]
     rows = np.hstack([weight * moments_n, weight * moments_t])
     rows = np.vstack([rows, np.hstack([np.zeros_like(decoupled), decoupled])])
-    return rows, np.concatenate([material.voigt[_PAIRS3], [0.0, 0.0]])
+    return rows, np.concatenate([material.voigt[PAIRS3], [0.0, 0.0]])
 
 
 def representable(family: Family, material: Material) -> bool:
@@ -278,40 +204,12 @@ def representable_by_directions(material: Material, count: int = 360) -> bool:
     """
     psi = np.pi * np.arange(count) / count
     if isinstance(material, ConductivityTensor):
-        return feasible(conductive_moments(psi), material.matrix[_PAIRS2])
+        return feasible(conductive_moments(psi), material.matrix[PAIRS2])
     moments_n, moments_t = elastic_moments(psi)
     decoupled = stretch_rows(psi)[1][1:]
     rows = np.hstack([moments_n, moments_t])
     rows = np.vstack([rows, np.hstack([np.zeros_like(decoupled), decoupled])])
-    return feasible(rows, np.concatenate([material.voigt[_PAIRS3], [0.0, 0.0]]))
-
-
-def _no_positive(family: Family, material: Material, explain: bool, largest: int = 14) -> str:
-    """Say which m would have non-negative moduli, or that none up to `largest` has, or none."""
-    here = f"no non-negative bond moduli represent this tensor at m = {family.m:g}"
-    if not explain:
-        return here
-    if not representable_by_directions(material):
-        return (
-            f"{here}, nor at any m ≤ {largest} or beyond: bonds in all directions together do not "
-            f"make it. {_instead(family, material, explain)}"
-        )
-    for m in range(int(family.m) + 1, largest + 1):
-        other = Family(m, family.spacing * family.m / m, family.area_rule, family.influence)
-        if representable(other, material):
-            instead = _instead(family, material, explain)
-            return f"{here}; they exist at m = {m}. Use that, or the following. {instead}"
-    return (
-        f"{here}, nor at any m ≤ {largest}, whose bonds have too few directions. "
-        f"{_instead(family, material, explain)}"
-    )
-
-
-def _instead(family: Family, material: Material, explain: bool) -> str:
-    # Stability judges moduli, so that it is imported where it is asked.
-    from .stability import remedy
-
-    return remedy(family, material) if explain else ""
+    return feasible(rows, np.concatenate([material.voigt[PAIRS3], [0.0, 0.0]]))
 
 
 def _conductive(
@@ -319,9 +217,8 @@ def _conductive(
     material: ConductivityTensor,
     calibration: Calibration,
     law: AngularLaw,
-    explain: bool,
 ) -> ConductiveModuli:
-    target = material.matrix[_PAIRS2]
+    target = material.matrix[PAIRS2]
     psi = family.angle
     weight = bond_weights(family, material)
     name = type(law).__name__
@@ -334,19 +231,22 @@ def _conductive(
         radial = 0.5 * family.horizon**2 * family.influence.moment(1) * 2 * np.pi / len(circle)
         on_circle = law.conductive(circle, material, extended=False)
         system = radial * conductive_moments(circle) @ on_circle.T
-    try:
-        conductivity = _solve(system, target, f"{name} law ({calibration})") @ basis
-    except CalibrationError as error:
-        raise CalibrationError(f"{error}. {_instead(family, material, explain)}".rstrip()) from None
+    conductivity = _solve(system, target, f"{name} law ({calibration})") @ basis
     if calibration == "positive":
         half = family.size // 2
         scale = np.maximum(np.abs(conductivity[:half]), 1e-3 * np.abs(conductivity).max())
         moments, target = _positive_system(family, material)
         found = closest(moments * scale, target, np.maximum(conductivity[:half] / scale, 0.0))
         if found is None:
-            raise CalibrationError(_no_positive(family, material, explain))
+            raise _not_on(family)
         conductivity = np.tile(found * scale, 2)
     return ConductiveModuli(_mirrored(conductivity))
+
+
+def _not_on(family: Family) -> NotRepresentableError:
+    return NotRepresentableError(
+        f"no non-negative bond moduli represent this tensor at m = {family.m:g}"
+    )
 
 
 def _mirrored(values: Array) -> Array:

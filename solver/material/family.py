@@ -14,9 +14,9 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from .influence import CONSTANT, Influence, influence
 
-Array = NDArray[np.float64]
 AreaRule = Literal["full", "partial", "exact"]
 
 # Lengths equal to the horizon up to rounding belong to the family (or 3-4-5 triangles flicker).

@@ -10,12 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import CalibrationError
 from .tensors import ConductivityTensor, ElasticTensor
-
-Array = NDArray[np.float64]
 
 
 def _even(n: int) -> int:

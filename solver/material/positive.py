@@ -9,10 +9,9 @@ exact steps on the optimality conditions.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-Array = NDArray[np.float64]
+from ..arrays import Array
 
 _FEASIBLE = 1e-9
 

@@ -1,1 +1,6 @@
 """Stiffness of a body as products with fields, assembled where somebody needs the matrix."""
+
+from .bond_operator import BondOperator
+from .surface_stiffness import SurfaceStiffness
+
+__all__ = ["BondOperator", "SurfaceStiffness"]

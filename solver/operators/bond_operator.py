@@ -15,42 +15,15 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import LinearOperator
 
-from ..bonds.bonds import Bonds
-from ..material.calibration import ConductiveModuli, ElasticModuli, Moduli
-from . import kernels
+from ..arrays import Array, Mask
+from ..bonds import Bonds
+from ..material import ElasticModuli, Moduli
+from . import kernels, segments
+from .blocks import offset_blocks
 from .surface_stiffness import SurfaceStiffness, stiffness_of
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-
-# Kinds of particles as the kernels know them.
-_BULK, _TRUNCATED, _SPECIAL = 0, 1, 2
 # Own stiffness, relative to the bulk's, beyond which a particle is tied to the surface's nodes.
 STIFF = 2.0
-
-
-def offset_blocks(bonds: Bonds, moduli: Moduli) -> Array:
-    """Entries of the bond blocks of all offsets, shape (family size, 6, 3 or 1).
-
-    Elasticity: A11, A12, A22, t̂1, t̂2, c (rotation scaled by the spacing), the first three only
-    where no bond resists shear. Conduction: w k/|ξ|².
-    """
-    family = bonds.family
-    weight = family.weight * family.cell
-    if isinstance(moduli, ConductiveModuli):
-        return (weight * moduli.conductivity / family.length**2)[:, None]
-    n, t = family.normal, family.tangent
-    axial = weight * moduli.normal / family.length
-    transverse = weight * moduli.shear / family.length
-    block = [
-        axial * n[:, a] * n[:, b] + transverse * t[:, a] * t[:, b]
-        for a, b in ((0, 0), (0, 1), (1, 1))
-    ]
-    if not moduli.has_shear:
-        return np.column_stack(block)
-    cells = family.length / family.spacing
-    half = 0.5 * transverse * cells
-    return np.column_stack([*block, half * t[:, 0], half * t[:, 1], 0.5 * half * cells])
 
 
 class BondOperator(LinearOperator):
@@ -129,44 +102,25 @@ class BondOperator(LinearOperator):
     def _layout(self) -> tuple[NDArray[np.uint64], Array]:
         """Segments of the active particles and the diagonal blocks that differ from the bulk's."""
         bonds, lattice = self.bonds, self.bonds.lattice
-        kind = np.full(lattice.count, _BULK, dtype=np.int64)
-        kind[bonds.short] = _TRUNCATED
-        kind[bonds.special] = _SPECIAL
-        rows, columns = (axis[self.active] for axis in lattice.cells)
+        kind = np.full(lattice.count, segments.BULK, dtype=np.int64)
+        kind[bonds.short] = segments.TRUNCATED
+        kind[bonds.special] = segments.SPECIAL
         kind = kind[self.active]
         if self.fixed is not None:
             # Their blocks differ for whoever inverts them.
-            kind[self.fixed.any(axis=0) & (kind == _BULK)] = _TRUNCATED
-        own = kind != _BULK
+            kind[self.fixed.any(axis=0) & (kind == segments.BULK)] = segments.TRUNCATED
+        own = kind != segments.BULK
         diagonal = np.empty((len(self.bulk), int(own.sum())))
-        truncated = self.active[kind == _TRUNCATED]
-        diagonal[:, kind[own] == _TRUNCATED] = self._diagonal_sums(
+        truncated = self.active[kind == segments.TRUNCATED]
+        diagonal[:, kind[own] == segments.TRUNCATED] = self._diagonal_sums(
             bonds.exist(truncated).astype(np.float64)
         )
         special = bonds.column[self.active]
-        diagonal[:, kind[own] == _SPECIAL] = self._diagonal_sums(
-            bonds.factors[:, special[kind == _SPECIAL]]
+        diagonal[:, kind[own] == segments.SPECIAL] = self._diagonal_sums(
+            bonds.factors[:, special[kind == segments.SPECIAL]]
         )
-        own_column = np.cumsum(own) - 1
-        # A new segment starts where the row, the kind or the neighbourhood along a row breaks;
-        # columns of `factors` run on within a row because they follow the lattice's order.
-        step = np.ones(len(rows), dtype=bool)
-        step[1:] = (
-            (rows[1:] != rows[:-1]) | (columns[1:] != columns[:-1] + 1) | (kind[1:] != kind[:-1])
-        )
-        first = np.nonzero(step)[0]
-        size = np.diff(np.append(first, len(rows)))
-        segments = np.column_stack(
-            [
-                rows[first] * lattice.shape[1] + columns[first],
-                size,
-                first,
-                kind[first],
-                np.maximum(own_column[first], 0),
-                np.maximum(special[first], 0),
-            ]
-        )
-        return np.ascontiguousarray(segments, dtype=np.uint64), diagonal
+        found = segments.of(bonds.lattice, self.active, kind, np.cumsum(own) - 1, special)
+        return found, diagonal
 
     def _diagonal_sums(self, factors: Array) -> Array:
         """Diagonal blocks for bond factors of shape (family size, n): (entries, n).
@@ -215,22 +169,7 @@ class BondOperator(LinearOperator):
         boxes : ndarray of int, shape (n, 4)
             First row, first column, last row, last column of each, ends included.
         """
-        width = self.bonds.lattice.shape[1]
-        segments = self.segments.astype(np.int64)
-        # Segments follow the lattice's order, row by row.
-        row, column = segments[:, 0] // width, segments[:, 0] % width
-        first = np.searchsorted(row, boxes[:, 0])
-        last = np.searchsorted(row, boxes[:, 2], side="right")
-        count = last - first
-        box = np.repeat(np.arange(len(boxes)), count)
-        number = np.arange(count.sum()) + np.repeat(first - (np.cumsum(count) - count), count)
-        column, segments = column[number], segments[number]
-        start = np.maximum(column, boxes[box, 1]) - column
-        stop = np.minimum(column + segments[:, 1], boxes[box, 3] + 1) - column
-        kept = stop > start
-        segments += start[:, None] * np.array([1, 0, 1, 0, 1, 1])
-        segments[:, 1] = stop - start
-        return np.ascontiguousarray(segments[kept], dtype=np.uint64)
+        return segments.clipped(self.segments, self.bonds.lattice.shape[1], boxes)
 
     def apply_grid(
         self, grid: Array, segments: NDArray[np.uint64] | None = None, out: Array | None = None
@@ -324,18 +263,18 @@ class BondOperator(LinearOperator):
     @property
     def bulk_block(self) -> Array:
         """Diagonal block of a bulk particle, shape (components, components)."""
-        return self._as_blocks(self.bulk[:, None])[0]
+        return self.as_blocks(self.bulk[:, None])[0]
 
     @cached_property
     def own(self) -> NDArray[np.int64]:
         """Positions among the active particles of those with a diagonal block of their own."""
         kinds, sizes = self.segments[:, [3, 1]].astype(np.int64).T
-        return np.nonzero(np.repeat(kinds, sizes) != _BULK)[0]
+        return np.nonzero(np.repeat(kinds, sizes) != segments.BULK)[0]
 
     @property
     def own_blocks(self) -> Array:
         """Their diagonal blocks, shape (len(own), components, components)."""
-        blocks = self._as_blocks(self.diagonal)
+        blocks = self.as_blocks(self.diagonal)
         if self.surface is not None:
             self._relieve(blocks)
         if self.fixed is not None:
@@ -356,7 +295,8 @@ class BondOperator(LinearOperator):
         stiff = np.abs(np.einsum("pii->p", blocks[at])) > STIFF * np.abs(np.trace(self.bulk_block))
         blocks[at[stiff]] += self.surface.relief(self._on_surface[stiff])
 
-    def _as_blocks(self, entries: Array) -> Array:
+    def as_blocks(self, entries: Array) -> Array:
+        """Entries (entries, n) in the kernels' order as symmetric blocks (n, c, c)."""
         c = self.components
         blocks = np.empty((entries.shape[1], c, c))
         if c == 1:
@@ -378,46 +318,3 @@ class BondOperator(LinearOperator):
         arrays = (self.segments, self.steps, self.half_blocks, self.bulk, self.diagonal)
         surface = 0 if self.surface is None else self.surface.nbytes
         return sum(a.nbytes for a in arrays) + self.bonds.nbytes + surface
-
-    def to_csr(self) -> sparse.csr_array:
-        """The same operator as a sparse matrix, for small checks and factorisations."""
-        bonds, lattice, c = self.bonds, self.bonds.lattice, self.components
-        count = len(self.active)
-        number = np.full(lattice.shape, -1, dtype=np.int64)
-        rows, columns = (axis[self.active] for axis in lattice.cells)
-        number[rows, columns] = np.arange(count)
-        values: list[Array] = []
-        ends: list[NDArray[np.int32]] = []
-        starts: list[NDArray[np.int32]] = []
-        layout = {1: [[0]], 2: [[0, 1], [1, 2]], 3: [[0, 1, 3], [1, 2, 4], [3, 4, 5]]}[c]
-        for o, (dx, dy) in enumerate(bonds.family.offsets):
-            neighbour = number[rows + dy, columns + dx]
-            here = np.nonzero(neighbour >= 0)[0]
-            factor = bonds.factor(o)[self.active[here]]
-            for a in range(c):
-                for b in range(c):
-                    # K_pq = [[−A, t̂], [−t̂ᵀ, c]]
-                    sign = 1.0 if b == 2 else -1.0
-                    values.append(sign * factor * self.blocks[o, layout[a][b]])
-                    starts.append((a * count + here).astype(np.int32))
-                    ends.append((b * count + neighbour[here]).astype(np.int32))
-        # As the kernels have them: the nodes' part follows as a whole.
-        diagonal = np.tile(self.bulk_block, (count, 1, 1))
-        diagonal[self.own] = self._as_blocks(self.diagonal)
-        for a in range(c):
-            for b in range(c):
-                values.append(diagonal[:, a, b])
-                starts.append((a * count + np.arange(count)).astype(np.int32))
-                ends.append((b * count + np.arange(count)).astype(np.int32))
-        matrix = sparse.coo_array(
-            (np.concatenate(values), (np.concatenate(starts), np.concatenate(ends))),
-            shape=self.shape,
-        ).tocsr()
-        if self.surface is not None:
-            matrix = sparse.csr_array(matrix + self.surface.condensed(self.surface_basis()))
-        if self.fixed is not None:
-            free = sparse.diags_array((~self.fixed).ravel().astype(np.float64))
-            identity = sparse.diags_array(self.fixed.ravel() * self.identity_scale)
-            matrix = (free @ matrix @ free + identity).tocsr()
-        matrix.eliminate_zeros()
-        return matrix

@@ -27,14 +27,10 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
-from ..geometry.outline import Outline
-from ..material.calibration import ConductiveModuli, Moduli, effective_tensor, stretch_rows
-from ..material.family import Family
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+from ..arrays import Array, Indices
+from ..geometry import Outline
+from ..material import ConductiveModuli, Family, Moduli, effective_tensor, stretch_rows
 
 _OPTIONS: Any = {"cache": True, "nogil": True}
 

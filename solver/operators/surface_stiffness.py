@@ -9,17 +9,14 @@ from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import SuperLU, splu
 
-from ..bonds.ended import SHORTEST, EndedBonds
-from ..material.calibration import ConductiveModuli, Moduli
-from ..material.family import Family
+from ..arrays import Array, Indices
+from ..bonds import EndedBonds
+from ..bonds.ended import SHORTEST
+from ..material import ConductiveModuli, Family, Moduli
 from .skin import thickness
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # Ratio of pivots below which the nodes' stiffness counts as singular.
 _SINGULAR = 1e-14

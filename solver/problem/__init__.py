@@ -1,1 +1,7 @@
 """What is asked: supports, loads, checks that all is held, and the scene as arrays."""
+
+from .conditions import Load, Support
+from .description import Description
+from .discretisation import Discretisation
+
+__all__ = ["Description", "Discretisation", "Load", "Support"]

@@ -7,28 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, Mask
 from ..errors import SceneError
-from ..geometry.edge_quadrature import Quadrature, Where
-from ..geometry.lattice import Lattice
-from ..geometry.outline import Outline
-from ..geometry.regions import Point, Region
+from ..geometry import Lattice, Outline, Point, Quadrature, Where, select
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 Value = float | ArrayLike | Callable[[Array, Array], Any]
-
-
-def select(lattice: Lattice, where: Where) -> Mask:
-    """Particles in a region, or those for which ``where(x, y)`` is true, shape (N,)."""
-    x, y = lattice.points.T
-    if isinstance(where, Region):
-        return where.contains(x, y)
-    selected = np.asarray(where(x, y))
-    if selected.dtype != bool or selected.shape != x.shape:
-        raise SceneError("a selection must return one boolean a particle")
-    return selected
 
 
 def evaluate(value: Value, points: Array, components: int, what: str) -> Array:

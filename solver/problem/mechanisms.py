@@ -20,14 +20,13 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, lobpcg
 from threadpoolctl import threadpool_limits
 
-from ..bonds.bonds import Bonds
+from ..arrays import Mask
+from ..bonds import Bonds
 from ..errors import MechanismError
-from ..linear.two_level import TwoLevel
-from ..operators.bond_operator import BondOperator
+from ..linear import TwoLevel
+from ..operators import BondOperator
+from ..operators.assembled import to_csr
 from .rigid import unheld
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 # Smallest own stiffness of a particle, relative to its largest.
 _SINGULAR = 1e-9
@@ -56,7 +55,7 @@ def zero_energy_particles(operator: BondOperator) -> NDArray[np.int64]:
     """
     size = operator.shape[0]
     if size < 30:
-        matrix = operator.to_csr().toarray()
+        matrix = to_csr(operator).toarray()
         values, vectors = np.linalg.eigh(matrix)
         values = values / values[-1]
     else:

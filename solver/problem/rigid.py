@@ -11,10 +11,8 @@ from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse.csgraph import connected_components
 
-from ..bonds.bonds import Bonds
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from ..arrays import Array, Mask
+from ..bonds import Bonds
 
 # A motion counts as blocked if its square on the prescribed unknowns exceeds this share of the
 # largest one's.

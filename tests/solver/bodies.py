@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from solver import Crack, Family, Region
-from solver.geometry.lattice import Lattice
-from solver.material.calibration import ConductiveModuli, ElasticModuli, Moduli
+from solver.geometry import Lattice
+from solver.material import ConductiveModuli, ElasticModuli, Moduli
 
 Array = NDArray[np.float64]
 

@@ -15,9 +15,8 @@ from solver import (
     TwoHarmonic,
     recovery,
 )
-from solver.material.calibration import calibrate
-from solver.material.stability import assess
-from solver.operators.bond_operator import BondOperator
+from solver.material import assess, calibrate
+from solver.operators import BondOperator
 from solver.recovery import displacement_gradient
 from solver.solution import Solution
 from tests.solver.bodies import DISC, FIG_7, Cells, block, conductivities, exact, few, masks, voigts

@@ -14,8 +14,7 @@ import numpy as np
 from cmverify.case import Array
 
 if TYPE_CHECKING:
-    from solver.material.calibration import ElasticModuli
-    from solver.material.family import Family
+    from solver.material import ElasticModuli, Family
 
 
 def energy_of_wave(family: Family, moduli: ElasticModuli, k: Array) -> Array:

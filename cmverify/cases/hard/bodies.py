@@ -15,7 +15,7 @@ from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
     from references.analytic.elasticity import PolynomialDisplacement
-    from solver.material.calibration import Calibration
+    from solver.material import Calibration
 
 SEED = 2022
 TOLERANCE = 1e-13

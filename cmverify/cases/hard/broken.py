@@ -16,9 +16,8 @@ from cmverify.case import Array
 
 if TYPE_CHECKING:
     from solver import Discretisation, Solution
-    from solver.geometry.lattice import Lattice
-    from solver.material.family import Family
-    from solver.material.tensors import Material
+    from solver.geometry import Lattice
+    from solver.material import Family, Material
 
 Mask = NDArray[np.bool_]
 Broken = Callable[["Lattice", "Family"], Mask]
@@ -75,8 +74,10 @@ def direct_solution(discretisation: Discretisation) -> Array:
     """Unknowns of the active particles by a sparse factorisation, (components, active)."""
     from scipy.sparse.linalg import splu
 
+    from solver.operators.assembled import to_csr
+
     operator = discretisation.operator
-    matrix = operator.to_csr().tocsc()
+    matrix = to_csr(operator).tocsc()
     return splu(matrix).solve(discretisation.right_hand_side()).reshape(operator.components, -1)
 
 
@@ -86,8 +87,10 @@ def negative_directions(discretisation: Discretisation) -> int:
     By Sylvester's law of inertia: the pivots of a symmetric elimination have the signs of the
     eigenvalues. Rotations of negative stiffness account for one negative pivot each.
     """
+    from solver.operators.assembled import to_csr
+
     operator = discretisation.operator
-    matrix = operator.to_csr().tocsc()
+    matrix = to_csr(operator).tocsc()
     negative = _negative_pivots(matrix)
     if operator.components < 3:
         return negative

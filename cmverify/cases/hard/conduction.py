@@ -14,7 +14,7 @@ from cmverify.cases.hard import bodies
 from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
-    from solver.material.calibration import Calibration
+    from solver.material import Calibration
 
 HORIZONS = (3, 5, 7)
 LADDER = {Level.QUICK: (24,), Level.STANDARD: (24, 48, 96), Level.PAPER: (24, 48, 96, 160)}

@@ -16,7 +16,7 @@ from cmverify.cases.hard.tensors import tensor
 from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
-    from solver.material.tensors import Material
+    from solver.material import Material
 
 TOLERANCE = 1e-12
 # The sparse factorisation that judges takes a minute at 120.

@@ -16,8 +16,8 @@ from cmverify.judge.norms import relative_l2
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from solver.geometry.lattice import Lattice
-    from solver.material.family import Family
+    from solver.geometry import Lattice
+    from solver.material import Family
 
 TOLERANCE = 1e-12
 LADDER = {Level.QUICK: (24,), Level.STANDARD: (24, 60), Level.PAPER: (24, 60)}

@@ -42,7 +42,7 @@ def attempt(voigt: Array, n: int, calibration: str) -> tuple[str, float, float]:
     that other means do not confirm; "rescued" is appended where what it recommends was solved.
     """
     from solver import CalibrationError, ElasticTensor, Family, InadmissibleMaterialError
-    from solver.material.calibration import calibrate
+    from solver.material import calibrate
 
     exact = bodies.field_of(voigt, (1, 2))
     try:

@@ -39,7 +39,7 @@ class Refusal:
 def _confirmed(refusal: Refusal, voigt: Array, m: float, message: str) -> bool:
     """Whether the reason holds by other means than the solver's."""
     from solver import ElasticTensor, Family
-    from solver.material.calibration import ElasticModuli, calibrate
+    from solver.material import ElasticModuli, calibrate
 
     family, settings = Family(m), refusal.settings
     if refusal.error == "CalibrationError":

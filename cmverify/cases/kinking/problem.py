@@ -20,10 +20,9 @@ from cmverify.cases.common import materials
 
 if TYPE_CHECKING:
     from solver import ElasticTensor
-    from solver.bonds.volume_method import Surface
-    from solver.fracture import Growth
+    from solver.bonds import Surface
+    from solver.fracture import Growth, ToughnessCalibration
     from solver.fracture.programme import Control
-    from solver.fracture.toughness import ToughnessCalibration
 
 #: Name here, in `cmverify.cases.common.materials`, in `references.tables.stored_kinks`.
 MATERIALS = {"silicon": "silicon", "fully anisotropic": "anisotropic"}

@@ -28,7 +28,8 @@ from cmverify.studies.speed.scenes import crack_tip, kernel_scenes, static_scene
 from references.analytic import lekhnitskii
 from solver import Discretisation
 from solver.analyses.statics import solve
-from solver.bonds.volume_method import Surface
+from solver.bonds import Surface
+from solver.operators.assembled import to_csr
 
 Array = NDArray[np.float64]
 
@@ -102,7 +103,7 @@ def kernel(resolution: int = 120) -> list[Row]:
         operator = scene.discretise().operator
         x = np.random.default_rng(1).normal(size=operator.shape[0])
         exact, c = operator.matvec(x), operator.components
-        formats = _sparse_formats(operator.to_csr(), c)
+        formats = _sparse_formats(to_csr(operator), c)
         interleaved = x.reshape(c, -1).T.ravel()
         given = {name: interleaved if "BSR" in name else x for name in formats}
         own = partial(operator.matvec, x)
@@ -256,7 +257,7 @@ def _scipy_cg(problem: Discretisation, tolerance: float, base: float) -> Row:
     operator = problem.operator
     rhs = problem.right_hand_side()
     cpu, wall = process_time(), perf_counter()
-    matrix = operator.to_csr()
+    matrix = to_csr(operator)
     assembled = process_time() - cpu
     inverse = np.linalg.inv(operator.block_diagonal)
     c = operator.components
@@ -294,7 +295,7 @@ def _pardiso(problem: Discretisation, base: float) -> Row | None:
         return None
     rhs = problem.right_hand_side()
     cpu, wall = process_time(), perf_counter()
-    matrix = problem.operator.to_csr()
+    matrix = to_csr(problem.operator)
     assembled = process_time() - cpu
     x = pypardiso.spsolve(sparse.csr_matrix(matrix), rhs)
     cpu, wall = process_time() - cpu, perf_counter() - wall

@@ -80,7 +80,7 @@ def polar(solid: str, voigt: Array, m: float = 5, count: int = 361) -> Polar:
     """Curves of the closed forms and the bonds of every calibration that has any."""
     from cmverify.studies.stability.studies import CALIBRATIONS
     from solver import CalibrationError, ElasticTensor, Family
-    from solver.material.calibration import ElasticModuli, calibrate
+    from solver.material import ElasticModuli, calibrate
 
     psi = np.linspace(0.0, 2 * np.pi, count)
     axial, shear = off_axis(voigt, psi)
@@ -90,7 +90,7 @@ def polar(solid: str, voigt: Array, m: float = 5, count: int = 361) -> Polar:
     bonds: dict[str, tuple[Array, Array, Array]] = {}
     for calibration in CALIBRATIONS:
         try:
-            moduli = calibrate(family, ElasticTensor(voigt), calibration, explain=False)
+            moduli = calibrate(family, ElasticTensor(voigt), calibration)
         except CalibrationError:
             continue
         assert isinstance(moduli, ElasticModuli)

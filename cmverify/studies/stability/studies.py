@@ -12,7 +12,7 @@ from cmverify.case import Array
 from cmverify.cases.common import materials
 
 if TYPE_CHECKING:
-    from solver.material.calibration import Calibration
+    from solver.material import Calibration
 
 CALIBRATIONS: tuple[Calibration, ...] = ("continuum", "lattice", "positive")
 #: Values of a map where there are no such moduli, and where the rotation block has a pole.
@@ -44,12 +44,11 @@ def margin(tensor: Array, m: float, calibration: Calibration, count: int) -> flo
     """Stability margin, `NONE` without moduli, `POLE` where rotations lose their stiffness."""
     from cmverify.studies.stability.verdicts import material
     from solver import CalibrationError, Family
-    from solver.material.calibration import calibrate
-    from solver.material.stability import assess
+    from solver.material import assess, calibrate
 
     family = Family(m)
     try:
-        moduli = calibrate(family, material(tensor), calibration, explain=False)
+        moduli = calibrate(family, material(tensor), calibration)
     except CalibrationError:
         return NONE
     return assess(family, moduli, count).margin
@@ -143,7 +142,7 @@ def smallest_horizon(tensor: Array, largest: int = 10) -> float:
     """Smallest m with non-negative exact moduli; inf if no m has them, NaN if none to `largest`."""
     from cmverify.studies.stability.verdicts import material
     from solver import Family
-    from solver.material.calibration import representable, representable_by_directions
+    from solver.material import representable, representable_by_directions
 
     solid = material(tensor)
     if tensor.shape == (3, 3) and tensor[2, 2] < tensor[0, 1]:

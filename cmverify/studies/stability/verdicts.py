@@ -10,9 +10,7 @@ import numpy as np
 from cmverify.case import Array
 
 if TYPE_CHECKING:
-    from solver.material.calibration import Calibration, Moduli
-    from solver.material.family import AreaRule, Family
-    from solver.material.tensors import Material
+    from solver.material import AreaRule, Calibration, Family, Material, Moduli
 
 #: Calibrations and laws that are compared; None is the default law.
 CHOICES: tuple[tuple[Calibration, str | None], ...] = (
@@ -88,8 +86,8 @@ def extreme_eigenvalues(family: Family, moduli: Moduli, count: int = 24) -> tupl
     Rotations count as θ Δx. At k = 0 the displacements' eigenvalues vanish: that corner is left
     out, so that the smallest one of a stable solid is that of its longest wave on the grid.
     """
-    from solver.material.calibration import ConductiveModuli
-    from solver.material.stability import brillouin_zone, symbol
+    from solver.material import ConductiveModuli, brillouin_zone
+    from solver.material.symbol import symbol
 
     values = symbol(family, moduli, brillouin_zone(count))
     if isinstance(moduli, ConductiveModuli):
@@ -125,12 +123,11 @@ def judge(
     """
     from cmverify.cases.common import bond_energies
     from solver import CalibrationError, Family
-    from solver.material.calibration import ElasticModuli, calibrate
-    from solver.material.stability import assess
+    from solver.material import ElasticModuli, assess, calibrated
 
     family = Family(m, 1.0, area_rule)
     try:
-        moduli = calibrate(family, material(tensor), calibration, law_of(law))
+        moduli = calibrated(family, material(tensor), calibration, law_of(law))
     except CalibrationError as error:
         exist = calibration == "positive" and bond_energies.non_negative_moduli_exist(
             family, tensor

@@ -22,8 +22,8 @@ from cmverify.cases.hard import (
 )
 from cmverify.judge.verdict import judge
 from solver import ElasticTensor, Family, UniformShear
-from solver.material.calibration import calibrate, representable
-from solver.material.stability import symbol
+from solver.material import calibrate, representable
+from solver.material.symbol import symbol
 
 few = settings(derandomize=True, deadline=None, max_examples=15)
 

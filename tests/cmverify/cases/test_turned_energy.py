@@ -68,7 +68,7 @@ def test_continuum_energies_are_those_of_the_printed_formulas(m, solid):
 def test_relaxed_rotations_change_nothing():
     from cmverify.cases.common.bond_energies import energy_of_strain
     from solver import Family
-    from solver.material.calibration import calibrate
+    from solver.material import calibrate
 
     for calibration in turned_energy.CALIBRATIONS:
         solid = ElasticTensor(materials.turned(turned_energy.SOLIDS["anisotropic"], 25.0))

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from cmverify.case import Case, Check, Measurement, OrderBand
+from cmverify.case import Case, Check, Failed, Measurement, OrderBand
 from cmverify.judge.norms import relative_l2
-from cmverify.judge.verdict import Failed, judge, unjudged
+from cmverify.judge.verdict import judge, unjudged
 from tests.cmverify.toy_registry import toy, trapezium
 
 

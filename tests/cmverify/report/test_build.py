@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cmverify.judge.verdict import Failed
+from cmverify.case import Failed
 from cmverify.report import figures, summary
 from cmverify.report.build import build, number
 from cmverify.run import results

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from cmverify.case import Failed
 from cmverify.exchange.export import write_fields
-from cmverify.judge.verdict import Failed
 from cmverify.run import results
 from tests.cmverify.toy_registry import trapezium
 

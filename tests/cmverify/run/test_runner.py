@@ -4,8 +4,7 @@ import os
 
 import pytest
 
-from cmverify.case import Level
-from cmverify.judge.verdict import Failed
+from cmverify.case import Failed, Level
 from cmverify.run import results, runner
 from cmverify.run.threads import (
     VARIABLES,

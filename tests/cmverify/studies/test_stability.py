@@ -9,7 +9,7 @@ from cmverify.cli import app
 from cmverify.studies.stability import figures, page, polar, studies, verdicts
 from references.analytic.voigt import turned_axes
 from solver import ElasticTensor, Family
-from solver.material.calibration import calibrate, representable
+from solver.material import calibrate, representable
 
 cli = CliRunner()
 
@@ -65,7 +65,7 @@ def test_smallest_horizon_is_the_first_that_represents():
 
 
 def test_extreme_eigenvalues_bound_those_of_any_wave():
-    from solver.material.stability import symbol
+    from solver.material.symbol import symbol
 
     family = Family(3)
     moduli = calibrate(family, ElasticTensor.isotropic(1.0, 0.45))

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from solver import Crack, Family, SceneError, disc, rectangle
-from solver.bonds.bonds import Bonds
-from solver.geometry.lattice import Lattice
+from solver.bonds import Bonds
+from solver.geometry import Lattice
 from tests.solver.bodies import Cells, block, cut_by, exact, few, masks
 
 eighths = st.integers(-8, 64).map(lambda k: k / 8)

@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from solver import Crack, Family, rectangle
-from solver.bonds.bonds import Bonds
-from solver.bonds.volume_method import check_surface, full_volume, volume_factor
-from solver.geometry.lattice import Lattice
+from solver.bonds import Bonds, check_surface
+from solver.bonds.volume_method import full_volume, volume_factor
+from solver.geometry import Lattice
 from tests.solver.bodies import Cells, block, cut_by, few, masks
 from tests.solver.bonds.test_bonds import pair_factors
 

@@ -11,15 +11,15 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from solver.arrays import Array
 from solver.errors import MechanismError, SceneError
 from solver.fracture.breaking import TIE, Critical, critical_energies
-from solver.material.calibration import ElasticModuli
-from solver.scene import Discretisation, Scene
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from solver.material import ElasticModuli
+from solver.operators.assembled import to_csr
+from solver.problem import Discretisation
+from solver.scene import Scene
 
 # Dense stiffness matrices beyond this are no small models.
 _LARGEST = 6_000
@@ -92,7 +92,7 @@ def grow_singly(
 
 
 def _equilibrium(parts: Discretisation) -> Array:
-    matrix = parts.operator.to_csr().toarray()
+    matrix = to_csr(parts.operator).toarray()
     return parts.field(np.linalg.solve(matrix, parts.right_hand_side()))
 
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from solver import Crack, ElasticTensor, Family, Scene, Support, disc, fracture, recovery
-from solver.bonds.bonds import Bonds
-from solver.fracture.crack_path import damage, initial_tips, trace
-from solver.geometry.lattice import Lattice
+from solver.bonds import Bonds, damage
+from solver.fracture.crack_path import initial_tips, trace
+from solver.geometry import Lattice
 from tests.solver.bodies import block
 
 ORIGIN = np.zeros((1, 2))

@@ -13,8 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from solver import Crack, ElasticTensor, Load, Scene, SceneError, Support, fracture, rectangle
-from solver.bonds.bonds import Bonds
-from solver.fracture.programme import Programme
+from solver.bonds import Bonds
+from solver.fracture import Programme
 from tests.solver.bodies import block, few
 from tests.solver.fracture.one_bond_at_a_time import grow_singly
 

@@ -6,7 +6,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from solver import SceneError, disc, rectangle
-from solver.geometry.lattice import Lattice
+from solver.geometry import Lattice
 from tests.solver.bodies import Cells, exact, masks
 
 

@@ -8,8 +8,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from solver import Crack, SceneError, disc, polygon, rectangle
-from solver.geometry.outline import Outline
-from solver.geometry.regions import Region
+from solver.geometry import Outline, Region
 from tests.solver.bodies import exact
 
 

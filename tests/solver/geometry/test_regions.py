@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from solver import Crack, disc, polygon, rectangle
-from solver.geometry.lattice import Lattice
+from solver.geometry import Lattice
 from solver.geometry.regions import Difference
 from tests.solver.bodies import exact
 

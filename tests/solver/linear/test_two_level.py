@@ -8,7 +8,8 @@ import pytest
 from references.analytic import lekhnitskii
 from solver import ConductivityTensor, Crack, ElasticTensor, Scene, Support, disc
 from solver.analyses.statics import solve
-from solver.linear.two_level import BlockJacobi, TwoLevel
+from solver.linear import BlockJacobi, TwoLevel
+from solver.operators.assembled import to_csr
 
 VOIGT = np.array([[1, 0.2, 0.1], [0.2, 0.8, 1 / 6], [0.1, 1 / 6, 1 / 3]])
 
@@ -49,7 +50,7 @@ def test_symmetric_positive_and_within_the_smoother_s_bound(partly: bool) -> Non
     size = operator.shape[0]
     m = _dense(TwoLevel(operator, cells=4), size)
     assert np.abs(m - m.T).max() <= 1e-10 * np.abs(m).max()
-    stiffness = operator.to_csr().toarray()
+    stiffness = to_csr(operator).toarray()
     spectrum = np.linalg.eigvals(m @ stiffness)
     assert np.abs(spectrum.imag).max() < 1e-8
     # A V-cycle with a smoother that never amplifies has its spectrum in (0, 1].

@@ -7,8 +7,16 @@ import pytest
 
 import solver
 from solver import CalibrationError, ConductivityTensor, ElasticTensor, Family
-from solver.material.calibration import calibrate, representable, representable_by_directions
-from solver.material.stability import assess, remedy, require_admissible
+from solver.errors import NotRepresentableError
+from solver.material import (
+    assess,
+    calibrate,
+    calibrated,
+    remedy,
+    representable,
+    representable_by_directions,
+    require_admissible,
+)
 
 PLY = ElasticTensor([[140, 3, 0], [3, 10, 0], [0, 0, 5]])
 #: C66 > C12, and yet not a sum of non-negative bonds (see test_micromoduli).
@@ -67,10 +75,12 @@ def test_directions_decide_what_no_lattice_can_do():
     assert not representable(Family(3), steep)
 
 
-def test_explanations_can_be_left_out():
-    with pytest.raises(CalibrationError) as caught:
-        calibrate(Family(3), UNREACHABLE, "positive", explain=False)
+def test_calibration_itself_refuses_without_advice():
+    with pytest.raises(NotRepresentableError) as caught:
+        calibrate(Family(3), UNREACHABLE, "positive")
     assert "Use" not in str(caught.value)
+    with pytest.raises(NotRepresentableError, match="Use"):
+        calibrated(Family(3), UNREACHABLE, "positive")
 
 
 def test_laws_that_cannot_be_calibrated_say_what_can():
@@ -78,5 +88,5 @@ def test_laws_that_cannot_be_calibrated_say_what_can():
     # falls between them.
     material = ConductivityTensor.orthotropic(1000.0, 1.0, np.radians(15))
     with pytest.raises(CalibrationError, match="has the moments of this tensor") as caught:
-        calibrate(Family(3), material)
+        calibrated(Family(3), material)
     assert followed(str(caught.value), 3, material).sign == "positive"

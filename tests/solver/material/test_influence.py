@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from solver import Influence
-from solver.material.influence import CONICAL, CONSTANT, GAUSSIAN, influence
+from solver.material import CONSTANT
+from solver.material.influence import CONICAL, GAUSSIAN, influence
 
 
 @pytest.mark.parametrize(

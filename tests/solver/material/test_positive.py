@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 from solver import ConductivityTensor, Family
-from solver.material.calibration import ConductiveModuli, calibrate, effective_tensor
+from solver.material import ConductiveModuli, calibrate, effective_tensor
 from solver.material.positive import closest, feasible
 from tests.solver.bodies import exact
 

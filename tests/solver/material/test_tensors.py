@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from solver import ConductivityTensor, ElasticTensor
-from solver.material.tensors import stress_rotation
+from solver.material import stress_rotation
 from tests.solver.bodies import FIG_7, conductivities, exact, rotate_4, voigts
 
 angles = st.floats(-7.0, 7.0, allow_nan=False)

@@ -6,8 +6,8 @@ from hypothesis import given
 
 import solver.operators.surface_stiffness
 from solver import ConductivityTensor, Crack, ElasticTensor, Family, disc, rectangle
-from solver.geometry.outline import Outline
-from solver.material.calibration import calibrate
+from solver.geometry import Outline
+from solver.material import calibrate
 from solver.operators.skin import shares, thickness
 from tests.solver.bodies import DISC, FIG_7, conductivities, few, voigts
 from tests.solver.bonds.test_ended import body, homogeneous_error

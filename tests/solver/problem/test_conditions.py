@@ -16,7 +16,7 @@ from solver import (
     polygon,
     rectangle,
 )
-from solver.geometry.lattice import Lattice
+from solver.geometry import Lattice
 from solver.problem.conditions import evaluate
 from tests.solver.bodies import exact
 

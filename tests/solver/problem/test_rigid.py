@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from solver import ConductivityTensor, Crack, ElasticTensor, Family, Scene, SceneError, Support
-from solver.bonds.bonds import Bonds
-from solver.geometry.lattice import Lattice
+from solver.bonds import Bonds
+from solver.geometry import Lattice
 from solver.problem.rigid import parts
 from tests.solver.bodies import Cells, block, exact, masks
 from tests.solver.bonds.test_bonds import pair_factors

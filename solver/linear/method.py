@@ -1,0 +1,102 @@
+"""The method that the sign of an operator asks for, for every analysis.
+
+positive, central (no rotations)
+    Conjugate gradients (SciPy) with the two-level preconditioner. A direction of non-positive
+    energy, as a damaged body may have, ends the solve with a named error.
+indefinite (negative shear stiffness, positive condensed symbol)
+    A saddle in the rotations, solved by the same method on the displacements alone, rotations
+    condensed out matrix-free, preconditioned by a positive companion body. MINRES on the whole
+    saddle would take about as long, but could not notice what a bounded or damaged body may
+    have although its bulk has not: a direction of negative condensed energy.
+
+BLAS reductions change in the last bits with its thread count: whoever calls this pins BLAS to one
+thread. The kernels themselves do not depend on theirs.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, get_args
+
+import numpy as np
+from scipy.sparse.linalg import LinearOperator
+
+from ..arrays import Array
+from ..operators import BondOperator
+from .krylov import Task, condensed_gradients, conjugate_gradients
+from .two_level import BlockJacobi, TwoLevel
+
+Preconditioner = Literal["auto", "two-level", "block-jacobi"]
+
+# Below this many unknowns block Jacobi needs less time than the set-up of two levels.
+_TWO_LEVEL = 2_000
+
+
+def positive(operator: BondOperator, sign: str) -> BondOperator:
+    """The operator, or its positive companion if it is indefinite."""
+    return operator.companion() if sign == "indefinite" else operator
+
+
+def preconditioner(
+    operator: BondOperator,
+    sign: str,
+    choice: Preconditioner = "auto",
+    earlier: LinearOperator | None = None,
+) -> LinearOperator:
+    """The preconditioner of a body: two-level, or block Jacobi where that is cheaper.
+
+    Parameters
+    ----------
+    operator : BondOperator
+    sign : str
+        See `solver.material.stability.Stability`.
+    choice : {"auto", "two-level", "block-jacobi"}
+    earlier : LinearOperator, optional
+        One of the same body before some bonds changed: a two-level one is brought up to date.
+
+    Raises
+    ------
+    ValueError
+        If `choice` is unknown.
+    """
+    if choice not in get_args(Preconditioner):
+        raise ValueError(
+            f"unknown preconditioner {choice!r}; known: {', '.join(get_args(Preconditioner))}"
+        )
+    small = operator.shape[0] < _TWO_LEVEL
+    if choice == "block-jacobi" or (choice == "auto" and small):
+        return BlockJacobi(positive(operator, sign))
+    if isinstance(earlier, TwoLevel):
+        return earlier.updated(positive(operator, sign))
+    return TwoLevel(positive(operator, sign))
+
+
+def iterate(
+    operator: BondOperator, sign: str, preconditioner: LinearOperator, task: Task
+) -> tuple[Array, int]:
+    """Solve a task; returns the solution and the number of iterations.
+
+    Raises
+    ------
+    NegativeCurvatureError
+        If a body taken to be positive is not.
+    """
+    if not task.rhs.any():
+        return np.zeros_like(task.rhs), 0
+    if sign == "indefinite":
+        return condensed_gradients(operator, preconditioner, task)
+    return conjugate_gradients(operator, preconditioner, task)
+
+
+def name(sign: str, preconditioner: LinearOperator | None) -> str:
+    """What `iterate` does, in words."""
+    if preconditioner is None:
+        return "nothing to solve"
+    levels = "two-level" if isinstance(preconditioner, TwoLevel) else "block Jacobi"
+    on = "CG on condensed displacements" if sign == "indefinite" else "CG"
+    return f"{on}, {levels}"
+
+
+def relative_residual(operator: BondOperator, x: Array, rhs: Array) -> float:
+    """|b − K x| / |b| with the operator itself, 0 for b = 0."""
+    size = float(np.linalg.norm(rhs))
+    return float(np.linalg.norm(rhs - operator.matvec(x))) / size if size else 0.0

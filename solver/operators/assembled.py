@@ -1,0 +1,54 @@
+"""The operator as a matrix, for small checks and factorisations: solves never need it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+from ..arrays import Array
+from .bond_operator import BondOperator
+
+
+def to_csr(operator: BondOperator) -> sparse.csr_array:
+    """The same operator as a sparse matrix, shape (components·active, components·active)."""
+    bonds, lattice, c = operator.bonds, operator.bonds.lattice, operator.components
+    count = len(operator.active)
+    number = np.full(lattice.shape, -1, dtype=np.int64)
+    rows, columns = (axis[operator.active] for axis in lattice.cells)
+    number[rows, columns] = np.arange(count)
+    values: list[Array] = []
+    ends: list[NDArray[np.int32]] = []
+    starts: list[NDArray[np.int32]] = []
+    layout = {1: [[0]], 2: [[0, 1], [1, 2]], 3: [[0, 1, 3], [1, 2, 4], [3, 4, 5]]}[c]
+    for o, (dx, dy) in enumerate(bonds.family.offsets):
+        neighbour = number[rows + dy, columns + dx]
+        here = np.nonzero(neighbour >= 0)[0]
+        factor = bonds.factor(o)[operator.active[here]]
+        for a in range(c):
+            for b in range(c):
+                # K_pq = [[−A, t̂], [−t̂ᵀ, c]]
+                sign = 1.0 if b == 2 else -1.0
+                values.append(sign * factor * operator.blocks[o, layout[a][b]])
+                starts.append((a * count + here).astype(np.int32))
+                ends.append((b * count + neighbour[here]).astype(np.int32))
+    # As the kernels have them: the nodes' part follows as a whole.
+    diagonal = np.tile(operator.bulk_block, (count, 1, 1))
+    diagonal[operator.own] = operator.as_blocks(operator.diagonal)
+    for a in range(c):
+        for b in range(c):
+            values.append(diagonal[:, a, b])
+            starts.append((a * count + np.arange(count)).astype(np.int32))
+            ends.append((b * count + np.arange(count)).astype(np.int32))
+    matrix = sparse.coo_array(
+        (np.concatenate(values), (np.concatenate(starts), np.concatenate(ends))),
+        shape=operator.shape,
+    ).tocsr()
+    if operator.surface is not None:
+        matrix = sparse.csr_array(matrix + operator.surface.condensed(operator.surface_basis()))
+    if operator.fixed is not None:
+        free = sparse.diags_array((~operator.fixed).ravel().astype(np.float64))
+        identity = sparse.diags_array(operator.fixed.ravel() * operator.identity_scale)
+        matrix = (free @ matrix @ free + identity).tocsr()
+    matrix.eliminate_zeros()
+    return matrix

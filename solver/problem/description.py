@@ -1,0 +1,118 @@
+"""What is asked, checked; knows no array and no analysis.
+
+`solver.Scene` is a description that can discretise and solve itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from numbers import Real
+from typing import Literal
+
+from ..arrays import Mask
+from ..bonds import Surface, check_surface
+from ..errors import SceneError
+from ..geometry import Crack, Lattice, Region
+from ..material import (
+    CONSTANT,
+    AngularLaw,
+    AreaRule,
+    Calibration,
+    ElasticTensor,
+    Family,
+    Influence,
+    Material,
+)
+from ..material.influence import influence
+from .conditions import Load, Support
+
+
+@dataclass(frozen=True)
+class Description:
+    """A body, its material, what holds it and what acts on it.
+
+    Parameters
+    ----------
+    region : Region
+    spacing : float
+        Grid spacing Δx, m.
+    material : ElasticTensor or ConductivityTensor
+        Decides the physics.
+    supports : sequence of Support
+        Later ones win where they overlap.
+    loads : sequence of Load
+        They add up.
+    m : float
+        Horizon in cells.
+    calibration : {"continuum", "lattice", "positive"}
+    law : angular law, optional
+        See `solver.material.calibration.calibrate` for the default.
+    influence : str or Influence
+    area_rule : {"partial", "full", "exact"}
+    surface : {"volume", "none", "extrapolated"}
+    cracks : sequence of Crack
+        Bonds that cross one are cut, and its faces are surfaces. A part that cracks leave on a
+        single bond is not looked for; broken bonds (`broken`) are searched for such hinges.
+    broken : callable, optional
+        ``broken(lattice, family)`` → booleans of shape (family size / 2, N): bonds, by half
+        offset and particle of origin, that carry nothing (damage).
+    loose : {"refuse", "drop"}
+        What to do with parts and particles that nothing holds: refuse the scene, or set them
+        aside (their fields are NaN, the rest is solved). A load on such a part is refused.
+
+    Raises
+    ------
+    SceneError
+        If the description contradicts itself.
+    """
+
+    region: Region
+    spacing: float
+    material: Material
+    supports: Sequence[Support] = ()
+    loads: Sequence[Load] = ()
+    m: float = 5
+    calibration: Calibration = "lattice"
+    law: AngularLaw | None = None
+    influence: str | Influence = field(default=CONSTANT)
+    area_rule: AreaRule = "partial"
+    surface: Surface = "volume"
+    cracks: Sequence[Crack] = ()
+    broken: Callable[[Lattice, Family], Mask] | None = None
+    loose: Literal["refuse", "drop"] = "refuse"
+
+    def __post_init__(self) -> None:
+        check_surface(self.surface)
+        if self.loose not in ("refuse", "drop"):
+            raise SceneError(f"loose must be 'refuse' or 'drop', not {self.loose!r}")
+        if not isinstance(self.region, Region):
+            raise SceneError(f"region must be a Region, not {type(self.region).__name__}")
+        if not isinstance(self.material, Material):
+            raise SceneError(
+                f"material must be an ElasticTensor or a ConductivityTensor, not "
+                f"{type(self.material).__name__}"
+            )
+        listed: dict[str, type] = {"supports": Support, "loads": Load, "cracks": Crack}
+        for name, kind in listed.items():
+            items = getattr(self, name)
+            if not isinstance(items, Sequence) or not all(isinstance(i, kind) for i in items):
+                raise SceneError(f"{name} must be a list of {kind.__name__} objects")
+        for name in ("spacing", "m"):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, Real):
+                raise SceneError(f"{name} must be a number, not {value!r}")
+        wanted = {"force", "couple", "traction"} if self.elastic else {"source", "inflow"}
+        for load in self.loads:
+            if load.kind not in wanted:
+                body = "an elastic body" if self.elastic else "a conductive body"
+                raise SceneError(f"a {load.kind} does not act on {body}")
+
+    @property
+    def elastic(self) -> bool:
+        """Whether the physics is elasticity (else conduction)."""
+        return isinstance(self.material, ElasticTensor)
+
+    def family(self) -> Family:
+        """The family of a bulk particle."""
+        return Family(self.m, self.spacing, self.area_rule, influence(self.influence))

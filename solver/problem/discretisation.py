@@ -1,0 +1,227 @@
+"""A scene as arrays and operators: shared by all analyses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from ..arrays import Array, Mask
+from ..bonds import Bonds
+from ..errors import MechanismError, SceneError
+from ..geometry import Lattice, Outline, Quadrature
+from ..material import Family, Moduli, Stability, calibrated, require_admissible
+from ..operators import BondOperator
+from . import mechanisms
+from .conditions import evaluate
+from .description import Description
+
+
+@dataclass(frozen=True, eq=False)
+class Discretisation:
+    """A scene as arrays: shared by all analyses.
+
+    Attributes
+    ----------
+    lattice, family, moduli, stability, bonds, operator
+        The parts, see their modules.
+    prescribed : ndarray of bool, shape (components, N)
+        True for parts set aside too.
+    values : ndarray, shape (components, N)
+        Prescribed values (rotations times the spacing), zero where free, NaN where set aside.
+    load : ndarray, shape (components, N)
+        Densities of force, couple over spacing, or source.
+    pull : ndarray, shape (components, nodes of the outline), optional
+        Loads of the surface's nodes, per volume of a particle.
+    seconds : float
+        Wall time that building all this took.
+    """
+
+    scene: Description
+    lattice: Lattice
+    family: Family
+    moduli: Moduli
+    stability: Stability
+    bonds: Bonds
+    operator: BondOperator
+    prescribed: Mask
+    values: Array
+    load: Array
+    pull: Array | None
+    seconds: float
+
+    @classmethod
+    def of(cls, scene: Description, growing: bool = False) -> Discretisation:
+        """Build it, cheap checks first."""
+        begun = perf_counter()
+        family = scene.family()
+        moduli = calibrated(family, scene.material, scene.calibration, scene.law)
+        stability = require_admissible(family, moduli)
+        lattice = Lattice(scene.region, scene.spacing, family.reach)
+        components = 1
+        if scene.elastic:
+            components = 2 if stability.sign == "central" else 3
+        prescribed, values = _supports(scene, lattice, components)
+        load = _loads(scene, lattice, components)
+        growing = growing or scene.broken is not None
+        pulls = _edge_loads(scene, lattice, growing)
+        broken = scene.broken(lattice, family) if scene.broken else None
+        held = np.logical_and.reduce(prescribed, axis=0)
+        aside = np.zeros(lattice.count, dtype=bool)
+        while True:
+            bonds = Bonds(lattice, family, scene.cracks, scene.surface, held, broken, growing)
+            operator = BondOperator(bonds, moduli, prescribed)
+            loose, why = mechanisms.find(
+                bonds,
+                operator,
+                prescribed,
+                scene.elastic,
+                broken is not None,
+                stability.sign != "indefinite",
+            )
+            if not len(loose):
+                break
+            if scene.loose == "refuse" or aside.sum() + len(loose) == (~held).sum():
+                raise mechanisms.refuse(why)
+            if load[:, loose].any():
+                raise MechanismError(
+                    f"a load acts on a part that nothing holds: {why}. Hold it, or leave it out "
+                    f"of the load (where=...)"
+                )
+            aside[loose] = True
+            prescribed[:, loose] = True
+            values[:, loose] = np.nan
+            broken = mechanisms.without(bonds, broken, loose)
+        pull = _share_out(pulls, lattice, operator, load)
+        if load[:, aside].any():
+            raise MechanismError(
+                "a load on an edge acts on a part that nothing holds: hold it, or leave it out of "
+                "the load (where=...)"
+            )
+        seconds = perf_counter() - begun
+        return cls(
+            scene,
+            lattice,
+            family,
+            moduli,
+            stability,
+            bonds,
+            operator,
+            prescribed,
+            values,
+            load,
+            pull,
+            seconds,
+        )
+
+    @property
+    def damaged(self) -> bool:
+        """Whether single bonds are broken (cracks that were always there do not count)."""
+        return self.scene.broken is not None
+
+    def right_hand_side(self) -> Array:
+        """Load of the active unknowns less what the prescribed ones exert, flattened."""
+        operator = self.operator
+        rhs = self.load[:, operator.active] - operator.coupling(self.values)
+        if operator.surface is not None and self.pull is not None:
+            operator.add_at_surface(rhs, -operator.surface.pull(self.pull))
+        if operator.fixed is not None:
+            given = self.values[:, operator.active]
+            rhs[operator.fixed] = operator.identity_scale * given[operator.fixed]
+        return rhs.ravel()
+
+    def surface_values(self, unknowns: Array) -> Array | None:
+        """Values of the surface's nodes for a field of shape (components, N), if it has nodes."""
+        surface = self.operator.surface
+        if surface is None:
+            return None
+        return surface.nodal(np.nan_to_num(unknowns[:, surface.particles]), self.pull)
+
+    def field(self, x: Array) -> Array:
+        """Values of all unknowns, shape (components, N), from a vector of the active ones."""
+        values = self.values.copy()
+        values[:, self.operator.active] = x.reshape(self.operator.components, -1)
+        values[self.prescribed] = self.values[self.prescribed]
+        return values
+
+
+def _supports(scene: Description, lattice: Lattice, components: int) -> tuple[Mask, Array]:
+    prescribed = np.zeros((components, lattice.count), dtype=bool)
+    values = np.zeros((components, lattice.count))
+    for support in scene.supports:
+        columns = support.columns(scene.elastic)
+        selected = support.select(lattice)
+        if not selected.any():
+            raise SceneError("a support holds no particle: its layer or region is empty")
+        evaluated: dict[tuple[int, int], Array] = {}
+        for unknown, value, component, width in columns:
+            if unknown >= components:
+                # Without shear stiffness rotations are no unknowns; prescribing them is moot.
+                continue
+            key = id(value), width
+            if key not in evaluated:
+                what = "a prescribed value"
+                evaluated[key] = evaluate(value, lattice.points[selected], width, what)
+            scale = scene.spacing if unknown == 2 else 1.0
+            prescribed[unknown, selected] = True
+            values[unknown, selected] = scale * evaluated[key][:, component]
+    return prescribed, values
+
+
+def _loads(scene: Description, lattice: Lattice, components: int) -> Array:
+    load = np.zeros((components, lattice.count))
+    for item in scene.loads:
+        if item.density is None:
+            continue
+        mask, density = item.density(lattice)
+        if item.kind == "couple":
+            if components < 3:
+                raise SceneError(
+                    "a body couple needs bonds with shear stiffness: this solid has none "
+                    "(C66 = C12), its particles do not resist rotation"
+                )
+            load[2, mask] += density[:, 0] / scene.spacing
+        else:
+            load[: density.shape[1], mask] += density.T
+    return load
+
+
+def _edge_loads(scene: Description, lattice: Lattice, growing: bool) -> list[Quadrature]:
+    """Loads on the body's edges, evaluated."""
+    edges = [item.edge for item in scene.loads if item.edge is not None]
+    if not edges:
+        return []
+    outline = Outline.of(lattice.region, scene.cracks, lattice.spacing, not growing)
+    return [edge(outline) for edge in edges]
+
+
+def _share_out(
+    pulls: list[Quadrature], lattice: Lattice, operator: BondOperator, load: Array
+) -> Array | None:
+    """Give loads on edges to the surface's nodes, or to the nearest particles (into `load`).
+
+    Returns the loads of the outline's nodes, (components, nodes), None if no bond ends at them.
+    """
+    surface = operator.surface
+    nodal = None
+    if surface is not None:
+        nodal = np.zeros((load.shape[0], len(surface.ended.outline.nodes)))
+    for rule in pulls:
+        force = rule.force.T / lattice.spacing**2
+        ends = rule.outline.edges[rule.edge].T
+        share = np.stack([1 - rule.position, rule.position])
+        known = np.zeros(len(rule.outline.nodes), dtype=bool)
+        if surface is not None:
+            known[surface.nodes] = True
+        felt = known[ends].all(axis=0)
+        if nodal is not None:
+            for node, part in zip(ends, share, strict=True):
+                for component, values in enumerate(force):
+                    np.add.at(nodal[component], node[felt], (part * values)[felt])
+        # Edges without nodes: no treatment that has any, or held particles behind them.
+        _, nearest = KDTree(lattice.points).query(rule.points[~felt])
+        for component, values in enumerate(force):
+            np.add.at(load[component], nearest, values[~felt])
+    return nodal
