@@ -42,13 +42,13 @@ def _pairs(solution: Solution) -> Iterator[_Pair]:
     # whose bonds to them carry the factor 0.
     known = np.nan_to_num(solution.unknowns, nan=0.0)
     grid = lattice.to_grid(known)
-    rows, columns = lattice.cells
+    rows, columns = lattice.rows_columns
     for o, (dx, dy) in enumerate(family.offsets):
         there = grid[:, rows + dy, columns + dx]
         yield _Pair(
             o,
-            float(family.weight[o] * family.cell),
-            bonds.factor(o),
+            float(family.weight[o] * family.cell_area),
+            bonds.strength(o),
             float(family.length[o]),
             family.normal[o],
             family.tangent[o],
@@ -81,7 +81,7 @@ class _Ends:
 def _ends(solution: Solution) -> _Ends | None:
     """The bonds that end at the surface, if the body has any."""
     parts = solution.discretisation
-    ended, surface, family = parts.bonds.ended, parts.operator.surface, parts.family
+    ended, surface, family = parts.bonds.ended, parts.operator.ended_stiffness, parts.family
     nodal = parts.surface_values(solution.unknowns)
     if ended is None or surface is None or nodal is None:
         return None
@@ -89,7 +89,7 @@ def _ends(solution: Solution) -> _Ends | None:
         np.nan_to_num(solution.unknowns[:, surface.particles]),
         nodal,
     )
-    weight = family.weight[ended.offset] * family.cell
+    weight = family.weight[ended.offset] * family.cell_area
     return _Ends(ended.particle, ended.offset, weight, ended.length, difference, strains)
 
 
@@ -166,11 +166,11 @@ def stress(solution: Solution, rule: Literal["plane", "family"] = "plane") -> Ar
             force *= 0.5 * ends.weight * family.length[o]
             ends.add(force[:, None] * family.normal[o].T[None], result)
     elif rule == "plane":
-        rows, columns = lattice.cells
+        rows, columns = lattice.rows_columns
         for pair in _pairs(solution):
             offset = family.offsets[pair.index]
             force = _force(pair, moduli, solution.spacing)
-            force = lattice.to_grid(force * (pair.weight * family.cell / solution.spacing))
+            force = lattice.to_grid(force * (pair.weight * family.cell_area / solution.spacing))
             for axis in (0, 1):
                 for start, share in _crossings(offset, axis):
                     result[:, axis] += share * force[:, rows + start[1], columns + start[0]]

@@ -29,20 +29,20 @@ class Scene(Description):
     True
     """
 
-    def discretise(self, growing: bool = False) -> Discretisation:
+    def discretise(self, sharp_tips: bool = True) -> Discretisation:
         """Check the scene and turn it into arrays and operators.
 
         Parameters
         ----------
-        growing : bool
-            Whether cracks are to grow: then the faces of those that exist share no node at their
-            tips (`solver.geometry.outline`).
+        sharp_tips : bool
+            Whether the two faces of a crack share the node of each tip (`solver.geometry.outline`);
+            they must not where cracks are to grow.
 
         Raises
         ------
         SceneError, CalibrationError, InadmissibleMaterialError
         """
-        return Discretisation.of(self, growing)
+        return Discretisation.of(self, sharp_tips)
 
     def solve(self, tolerance: float = 1e-10, **options: Any) -> Solution:
         """Static (or steady) solution; see `solver.analyses.statics.solve`."""

@@ -23,7 +23,7 @@ class Statistics:
         Particles of the body, free unknowns, directed bonds that a product visits.
     method : str
         Solver and preconditioner.
-    sign, margin : str, float
+    kind, margin : str, float
         Of the operator, see `solver.material.stability.Stability`.
     iterations : int
     residual : float
@@ -38,7 +38,7 @@ class Statistics:
     unknowns: int
     bonds: int
     method: str
-    sign: str
+    kind: str
     margin: float
     iterations: int
     residual: float
@@ -112,7 +112,7 @@ class Solution:
     @property
     def surface_points(self) -> Array:
         """Nodes of the surface at which bonds end, shape (s, 2), m; none where no bond does."""
-        surface = self.discretisation.operator.surface
+        surface = self.discretisation.operator.ended_stiffness
         if surface is None:
             return np.zeros((0, 2))
         return surface.ended.outline.nodes[surface.nodes]

@@ -191,9 +191,9 @@ def bond(strip: Strip, n: int) -> Measurement:
     growing = along >= horizon * (1 - 1e-9)
     release = strip.stress_ahead(n)
     # The first record is the body without load.
-    unit = h.stored / np.where(h.factor > 0, h.factor, np.nan) ** 2 / strip.scale
+    unit = h.stored / np.where(h.load_factor > 0, h.load_factor, np.nan) ** 2 / strip.scale
     slope = -float(np.polyfit(along[growing], unit[growing], 1)[0])
-    K = h.factor * strip.scale * intensity(strip, n) / critical_intensity(strip)
+    K = h.load_factor * strip.scale * intensity(strip, n) / critical_intensity(strip)
     cost, straying = run.bonds.cost_of(run.broken_bonds), _strays(strip, n, run)
     # What the bonds on the path have cost by each record.
     spent = np.concatenate([[0.0], np.cumsum(np.where(straying, 0.0, cost))])[h.broken.astype(int)]
@@ -233,7 +233,7 @@ def _strays(strip: Strip, n: int, run: Any) -> np.ndarray:
 
     bonds = run.broken_bonds
     _, p, q = run.bonds.ends(bonds)
-    points = strip.local(n, run.body.start.lattice.points)
+    points = strip.local(n, run.body.sound.lattice.points)
     path = strip.local(n, run.path)
     ahead = path[-1] + [3 * strip.m / n, 0.0]
     line = shapely.LineString(np.vstack([path, ahead]))

@@ -88,7 +88,7 @@ def counted_cut(family: Family, critical: Array, direction: tuple[int, int]) -> 
         # Away from the bonds' symmetric places, so that no bond meets the ends of the period.
         where = (1 - share) * (start[across] @ e) + share * (end[across] @ e) - 0.1234567
         total += float(np.sum((where >= 0) & (where < period)) * w * weight)
-    return total * family.cell**2 / (period * family.spacing)
+    return total * family.cell_area**2 / (period * family.spacing)
 
 
 def cuts(family: Family, distortion: float = 1.0) -> float:

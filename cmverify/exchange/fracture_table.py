@@ -92,8 +92,8 @@ def summary(run: Growth) -> dict[str, Any]:
     h, steps = run.history, run.steps
     return {
         "ended": run.reason,
-        "load factor": run.factor,
-        "largest factor": float(h.factor.max()),
+        "load factor": run.load_factor,
+        "largest factor": float(h.load_factor.max()),
         "advance": run.advance,
         "tip": f"({run.tip[0]:.4g}, {run.tip[1]:.4g})",
         "bonds broken": len(run.broken_bonds),

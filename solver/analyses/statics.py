@@ -54,7 +54,7 @@ def solve(
     if not 0 < tolerance < 1:
         raise ValueError(f"the tolerance must lie between 0 and 1, not {tolerance}")
     begun = perf_counter()
-    operator, sign = discretisation.operator, discretisation.stability.sign
+    operator, kind = discretisation.operator, discretisation.stability.kind
     with threadpool_limits(limits=1, user_api="blas"):
         rhs = discretisation.right_hand_side()
         start = _start(discretisation, previous)
@@ -62,13 +62,13 @@ def solve(
         inverse: LinearOperator | None = None
         if rhs.any():
             earlier = None if previous is None else previous.preconditioner
-            inverse = method.preconditioner(operator, sign, preconditioning, earlier)
+            inverse = method.preconditioner(operator, kind, preconditioning, earlier)
         ready = perf_counter()
         if inverse is not None:
             task = Task(rhs, start, tolerance, max_iterations)
-            x, iterations = method.iterate(operator, sign, inverse, task)
+            x, iterations = method.iterate(operator, kind, inverse, task)
         residual = method.relative_residual(operator, x, rhs)
-    used = method.name(sign, inverse)
+    used = method.name(kind, inverse)
     if not residual <= tolerance:
         raise ConvergenceError(
             f"{used} stopped at a relative residual of {residual:.2e} after {iterations} "
@@ -76,10 +76,12 @@ def solve(
         )
     statistics = Statistics(
         particles=discretisation.lattice.count,
-        unknowns=operator.shape[0] if operator.fixed is None else int((~operator.fixed).sum()),
+        unknowns=operator.shape[0]
+        if operator.identity_rows is None
+        else int((~operator.identity_rows).sum()),
         bonds=operator.directed_bonds,
         method=used,
-        sign=discretisation.stability.sign,
+        kind=discretisation.stability.kind,
         margin=discretisation.stability.margin,
         iterations=iterations,
         residual=residual,
@@ -107,7 +109,7 @@ def _start(discretisation: Discretisation, previous: Solution | None) -> Array:
     if previous is None or previous.unknowns.shape != discretisation.values.shape:
         return np.zeros(operator.shape[0])
     given = np.nan_to_num(previous.unknowns[:, operator.active])
-    if operator.fixed is not None:
+    if operator.identity_rows is not None:
         values = discretisation.values[:, operator.active]
-        given = np.where(operator.fixed, values, given)
+        given = np.where(operator.identity_rows, values, given)
     return given.ravel()

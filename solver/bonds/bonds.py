@@ -67,14 +67,14 @@ class Bonds:
     lattice : Lattice
     family : Family
     cracks : sequence of Crack
-    surface : {"none", "volume", "extrapolated"}
+    treatment : {"none", "volume", "extrapolated"}
     prescribed : ndarray of bool, shape (N,)
         Particles that are wholly prescribed: the body's edge is no surface for them.
     broken : ndarray of bool, shape (family size / 2, N), optional
         Bonds, by half offset and particle of origin, that carry nothing. Unlike a crack that was
         always there they make no surface: the bonds that are left are not stiffened.
-    growing : bool
-        Whether cracks are growing: their faces then share no node at the tips.
+    sharp_tips : bool
+        Whether the two faces of a crack share the node of each tip; they must not once it grows.
 
     Raises
     ------
@@ -87,13 +87,13 @@ class Bonds:
         lattice: Lattice,
         family: Family,
         cracks: Sequence[Crack] = (),
-        surface: Surface = "none",
+        treatment: Surface = "none",
         prescribed: Mask | None = None,
         broken: Mask | None = None,
-        growing: bool = False,
+        sharp_tips: bool = True,
     ) -> None:
-        self.lattice, self.family, self.surface = lattice, family, surface
-        rows, columns = lattice.cells
+        self.lattice, self.family, self.treatment = lattice, family, treatment
+        rows, columns = lattice.rows_columns
         free = np.ones(lattice.count, bool) if prescribed is None else ~prescribed
         longest = float(np.hypot(*family.offsets.T).max()) * (1 + _TIE)
         edge_near = distance_transform_edt(lattice.mask)[rows, columns] <= longest
@@ -107,7 +107,7 @@ class Bonds:
         special = np.zeros(lattice.count, dtype=bool)
         special[cut_at] = True
         special[broken_at] = True
-        if surface == "volume":
+        if treatment == "volume":
             volume = np.full(lattice.count, full_volume(family))
             physical = self.short[free[self.short]]
             missing = (family.fraction[:, None] * self._open(physical, free)).sum(axis=0)
@@ -121,7 +121,7 @@ class Bonds:
         #: Particles that own a column of `factors`, in the lattice's order.
         self.special: Indices = np.nonzero(special)[0]
         factors = self.exist(self.special).astype(np.float64)
-        if surface == "volume" and len(self.special):
+        if treatment == "volume" and len(self.special):
             volumes = np.zeros(lattice.shape)
             volumes[rows, columns] = volume
             here = volume[self.special]
@@ -133,11 +133,11 @@ class Bonds:
         if len(broken_at):
             factors[:, np.searchsorted(self.special, broken_at)] *= ~broken_there
         #: Factor of each bond of a special particle, shape (family size, special).
-        self.factors: Array = factors
+        self.strengths: Array = factors
         #: Bonds that end at the surface, if the treatment has any.
         self.ended: EndedBonds | None = None
-        if surface == "extrapolated":
-            self.ended = self._end(cracks, cut_at, cut, free, broken_at, growing)
+        if treatment == "extrapolated":
+            self.ended = self._end(cracks, cut_at, cut, free, broken_at, sharp_tips)
 
     def breaking(self, offsets: Indices, origins: Indices) -> Bonds:
         """These bonds with some more of them broken; what has not changed is shared.
@@ -147,25 +147,25 @@ class Bonds:
         offsets, origins : ndarray of int, shape (n,)
             Half offset and particle of origin of each bond that breaks. All must exist.
         """
-        rows, columns = self.lattice.cells
+        rows, columns = self.lattice.rows_columns
         half = self.family.size // 2
         dx, dy = self.family.offsets[offsets].T
         ends = self.lattice.number()[rows[origins] + dy, columns[origins] + dx]
         special = np.union1d(self.special, np.union1d(origins, ends))
         if len(special) == len(self.special):
-            factors = self.factors.copy()
+            factors = self.strengths.copy()
         else:
             factors = np.empty((self.family.size, len(special)))
             known = np.zeros(len(special), dtype=bool)
             known[np.searchsorted(special, self.special)] = True
-            factors[:, known] = self.factors
+            factors[:, known] = self.strengths
             # A particle becomes special: as yet its bonds are those of the bulk.
             factors[:, ~known] = self.exist(special[~known])
         factors[offsets, np.searchsorted(special, origins)] = 0.0
         factors[offsets + half, np.searchsorted(special, ends)] = 0.0
         result = copy(self)
         result.__dict__.pop("column", None)
-        result.special, result.factors = special, factors
+        result.special, result.strengths = special, factors
         return result
 
     def without_ends(self, particles: Indices) -> Bonds:
@@ -177,7 +177,7 @@ class Bonds:
 
     def exist(self, particles: Indices) -> Mask:
         """Which neighbours the particles have, shape (family size, particles)."""
-        rows, columns = (axis[particles] for axis in self.lattice.cells)
+        rows, columns = (axis[particles] for axis in self.lattice.rows_columns)
         dx, dy = self.family.offsets.T
         return self.lattice.mask[rows + dy[:, None], columns + dx[:, None]]
 
@@ -188,7 +188,7 @@ class Bonds:
         support, thin as its layer may be, and is no surface.
         """
         lattice = self.lattice
-        rows, columns = lattice.cells
+        rows, columns = lattice.rows_columns
         beyond = np.zeros(lattice.shape, dtype=bool)
         if not free.all():
             away = []
@@ -208,13 +208,13 @@ class Bonds:
         cut: Mask,
         free: Mask,
         broken_at: Indices,
-        growing: bool,
+        sharp_tips: bool,
     ) -> EndedBonds | None:
         """The bonds that end at a surface which a particle with a free unknown feels."""
         lattice, family = self.lattice, self.family
         particles = np.union1d(self.short, cut_at)
         # A particle that has lost all its bonds to others holds no surface.
-        rubble = broken_at[self.factors_of(broken_at).sum(axis=0) == 0]
+        rubble = broken_at[self.strengths_of(broken_at).sum(axis=0) == 0]
         particles = np.setdiff1d(particles, rubble, assume_unique=True)
         kept = np.isin(cut_at, particles)
         cut_at, cut = cut_at[kept], cut[:, kept]
@@ -223,7 +223,7 @@ class Bonds:
         lost = ~self.exist(particles)
         lost[:, np.searchsorted(particles, cut_at)] |= cut
         apart(cracks)
-        outline = Outline.of(lattice.region, cracks, lattice.spacing, joined=not growing)
+        outline = Outline.of(lattice.region, cracks, lattice.spacing, sharp_tips=sharp_tips)
         free = free[particles]
         ended = EndedBonds.of(lattice, family, outline, particles[free], lost[:, free])
         if free.all():
@@ -246,7 +246,7 @@ class Bonds:
                 f"broken bonds are given as booleans of shape {(half, self.lattice.count)} "
                 f"(half offsets × particles), not {broken.dtype} {broken.shape}"
             )
-        rows, columns = self.lattice.cells
+        rows, columns = self.lattice.rows_columns
         number = self.lattice.number()
         whole = np.zeros((2 * half, self.lattice.count), dtype=bool)
         for o, (dx, dy) in enumerate(self.family.offsets[:half]):
@@ -303,26 +303,26 @@ class Bonds:
         columns[self.special] = np.arange(len(self.special))
         return columns
 
-    def factor(self, offset: int) -> Array:
+    def strength(self, offset: int) -> Array:
         """Factor of the bond with family index `offset` of every particle, shape (N,)."""
-        rows, columns = self.lattice.cells
+        rows, columns = self.lattice.rows_columns
         dx, dy = self.family.offsets[offset]
         values = self.lattice.mask[rows + dy, columns + dx].astype(np.float64)
-        values[self.special] = self.factors[offset]
+        values[self.special] = self.strengths[offset]
         return values
 
-    def factors_of(self, particles: Indices) -> Array:
+    def strengths_of(self, particles: Indices) -> Array:
         """Factors of all bonds of some particles, shape (family size, particles)."""
         factors = self.exist(particles).astype(np.float64)
         columns = self.column[particles]
-        factors[:, columns >= 0] = self.factors[:, columns[columns >= 0]]
+        factors[:, columns >= 0] = self.strengths[:, columns[columns >= 0]]
         return factors
 
     @property
     def nbytes(self) -> int:
         """Memory of everything stored for single bonds."""
         ended = 0 if self.ended is None else self.ended.nbytes
-        return int(self.factors.nbytes + self.special.nbytes + self.short.nbytes + ended)
+        return int(self.strengths.nbytes + self.special.nbytes + self.short.nbytes + ended)
 
 
 def damage(bonds: Bonds) -> Array:
@@ -336,7 +336,7 @@ def damage(bonds: Bonds) -> Array:
     special = bonds.special
     if len(special):
         exist = bonds.exist(special)
-        gone = exist & (bonds.factors == 0)
+        gone = exist & (bonds.strengths == 0)
         whole = np.einsum("o,on->n", family.fraction, exist.astype(np.float64))
         lost = np.einsum("o,on->n", family.fraction, gone.astype(np.float64))
         result[special] = lost / np.where(whole > 0, whole, 1.0)

@@ -116,7 +116,7 @@ class Breakable:
         self.lattice, self.family, self.tension_only = lattice, family, bool(tension_only)
         self.critical = critical_energies(toughness, family)
         #: Energy of a pair per unit of its energy density, m⁴ per unit thickness.
-        self.pair = family.weight[:half] * family.cell**2
+        self.pair = family.weight[:half] * family.cell_area**2
         axial = 0.5 * moduli.normal[:half] / family.length[:half]
         shear = 0.5 * moduli.shear[:half] / family.length[:half]
         geometry = np.column_stack(
@@ -133,19 +133,19 @@ class Breakable:
         row = lattice.shape[1]
         dx, dy = family.offsets[:half].T
         self._steps = (dy * row + dx).astype(np.uint64)
-        rows, columns = lattice.cells
+        rows, columns = lattice.rows_columns
         self._cells = rows * row + columns
         everybody = np.arange(lattice.count)
         runs = segments.runs(lattice, everybody, np.zeros_like(everybody))
         self._segments = np.column_stack(runs).astype(np.uint64)
         self._number = lattice.number()
         #: Factor of every bond as it was at the start, 0 where there is none, (half, N).
-        self.whole: Array = np.stack([discretisation.bonds.factor(o) for o in range(half)])
+        self.whole: Array = np.stack([discretisation.bonds.strength(o) for o in range(half)])
         #: The same now.
-        self.factors: Array = self.whole.copy()
+        self.strengths: Array = self.whole.copy()
         #: Bonds that must not break, (half, N), or None.
         self.kept: Mask = self._kept(discretisation, no_fail)
-        self._out = np.empty_like(self.factors)
+        self._out = np.empty_like(self.strengths)
         self._grids = np.zeros((2, 3, int(np.prod(lattice.shape))))
 
     def _kept(self, discretisation: Discretisation, no_fail: tuple[Where, ...]) -> Mask:
@@ -153,8 +153,8 @@ class Breakable:
         for where in no_fail:
             zone |= select(self.lattice, where)
         held: Mask = np.logical_and.reduce(discretisation.prescribed, axis=0)
-        rows, columns = self.lattice.cells
-        kept = np.zeros(self.factors.shape, dtype=bool)
+        rows, columns = self.lattice.rows_columns
+        kept = np.zeros(self.strengths.shape, dtype=bool)
         for o, (dx, dy) in enumerate(self.family.offsets[: len(kept)]):
             there = self._number[rows + dy, columns + dx]
             # Between prescribed particles nothing can be relieved: the support is rigid.
@@ -187,7 +187,7 @@ class Breakable:
             self._segments,
             self._steps,
             self._load,
-            self.factors,
+            self.strengths,
             self.tension_only,
             self._out,
         )
@@ -203,7 +203,7 @@ class Breakable:
         other = grid if others is None else self._grid(1, others)
         out = np.empty(len(self._segments))
         bond_kernels.bond_work(
-            grid, other, self._segments, self._steps, self._stored, self.factors, out
+            grid, other, self._segments, self._steps, self._stored, self.strengths, out
         )
         return float(out.sum())
 
@@ -215,7 +215,7 @@ class Breakable:
         field[: len(unknowns)] = np.nan_to_num(unknowns)
         (dx, dy), turn = field[:2, q] - field[:2, p], field[2, q] + field[2, p]
         shear = nx * dy - ny * dx - half * turn
-        return self.factors.ravel()[bonds] * (a * (nx * dx + ny * dy) ** 2 + b * shear**2)
+        return self.strengths.ravel()[bonds] * (a * (nx * dx + ny * dy) ** 2 + b * shear**2)
 
     def cost_of(self, bonds: Indices) -> Array:
         """Energy that breaking these bonds takes, w_c α Λ Δv_p Δv_q."""
@@ -226,7 +226,7 @@ class Breakable:
     def ends(self, bonds: Indices) -> tuple[Indices, Indices, Indices]:
         """Half offset, particle of origin and particle at the far end of bonds by flat index."""
         o, p = np.divmod(bonds, self.lattice.count)
-        rows, columns = self.lattice.cells
+        rows, columns = self.lattice.rows_columns
         dx, dy = self.family.offsets[o].T
         return o, p, self._number[rows[p] + dy, columns[p] + dx]
 
@@ -242,20 +242,20 @@ class Breakable:
 
     def of_particles(self, particles: Indices) -> Indices:
         """Flat indices of all bonds with an end at one of `particles` that still exist."""
-        rows, columns = self.lattice.cells
-        half, count = self.factors.shape
+        rows, columns = self.lattice.rows_columns
+        half, count = self.strengths.shape
         mine = np.zeros(count, dtype=bool)
         mine[particles] = True
         found = []
         for o, (dx, dy) in enumerate(self.family.offsets[:half]):
             back = self._number[rows[particles] - dy, columns[particles] - dx]
             starts = np.union1d(particles, back[back >= 0])
-            found.append(o * count + starts[self.factors[o, starts] != 0])
+            found.append(o * count + starts[self.strengths[o, starts] != 0])
         return np.concatenate(found)
 
     def remove(self, bonds: Indices) -> None:
         """Bonds that carry nothing from now on."""
-        self.factors.ravel()[bonds] = 0.0
+        self.strengths.ravel()[bonds] = 0.0
 
 
 def next_batch(utilisation: Array, least: float, size: int) -> tuple[Indices, Array]:

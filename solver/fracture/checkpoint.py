@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 def fingerprint(run: Growth) -> str:
     """Hash of everything that decides the results of a run."""
-    start, bonds = run.body.start, run.bonds
+    start, bonds = run.body.sound, run.bonds
     digest = hashlib.sha256()
     parts: list[Any] = [
         start.lattice.mask,
@@ -36,7 +36,7 @@ def fingerprint(run: Growth) -> str:
         start.prescribed,
         start.values,
         start.load,
-        start.pull,
+        start.nodal_load,
         start.scene.surface,
         bonds.whole,
         bonds.critical,
@@ -62,7 +62,7 @@ def save(run: Growth, path: str | os.PathLike[str], mark: str) -> None:
     body, ledger = run.body, run.ledger
     arrays: dict[str, Any] = {
         "fingerprint": mark,
-        "factor": run.factor,
+        "factor": run.load_factor,
         "target": run.target,
         "resting": run.resting,
         "reason": run.reason,
@@ -82,7 +82,7 @@ def save(run: Growth, path: str | os.PathLike[str], mark: str) -> None:
             "coarse_data": coarse.data,
             "coarse_indices": coarse.indices,
             "coarse_indptr": coarse.indptr,
-            "coarse_cells": body.preconditioner.hats.cells,
+            "coarse_cells": body.preconditioner.hats.coarsening,
         }
     _write(path, arrays)
 
@@ -99,7 +99,7 @@ def load(run: Growth, path: str | os.PathLike[str], mark: str) -> bool:
     if found is None:
         return False
     body, bonds, ledger = run.body, run.bonds, run.ledger
-    run.factor, run.target = float(found["factor"]), int(found["target"])
+    run.load_factor, run.target = float(found["factor"]), int(found["target"])
     run.resting, run.reason = bool(found["resting"]), str(found["reason"])
     run.log += [(int(b), int(s), float(f), bool(d)) for b, s, f, d in found["breaks"]]
     run.solves += [(int(a), int(b), bool(c)) for a, b, c in found["steps"]]
@@ -115,7 +115,7 @@ def load(run: Growth, path: str | os.PathLike[str], mark: str) -> bool:
     if "coarse_data" in found:
         # The preconditioner belongs to the bonds there were when it was built.
         body.break_bonds(*bonds.ends(gone[:built]))
-        operator: BondOperator = method.positive(body.operator, body.sign)
+        operator: BondOperator = method.positive(body.operator, body.kind)
         parts = (found["coarse_data"], found["coarse_indices"], found["coarse_indptr"])
         coarse = sparse.csc_array(parts, shape=(len(parts[2]) - 1,) * 2)
         body.preconditioner = TwoLevel(operator, int(found["coarse_cells"]), coarse=coarse)

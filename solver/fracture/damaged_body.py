@@ -71,11 +71,11 @@ class Equilibrium:
     def __init__(
         self, discretisation: Discretisation, tolerance: float, max_iterations: int
     ) -> None:
-        self.start = discretisation
+        self.sound = discretisation
         self.bonds: Bonds = discretisation.bonds
         self.operator: BondOperator = discretisation.operator
         self.tolerance, self.max_iterations = tolerance, max_iterations
-        self.sign = discretisation.stability.sign
+        self.kind = discretisation.stability.kind
         self.aside = np.zeros(discretisation.lattice.count, dtype=bool)
         self.x: Array = np.zeros(self.operator.shape[0])
         self.preconditioner: LinearOperator | None = None
@@ -89,7 +89,7 @@ class Equilibrium:
     @property
     def prescribed(self) -> Mask:
         """Prescribed unknowns, those of particles set aside included, (components, N)."""
-        return self.start.prescribed | self.aside
+        return self.sound.prescribed | self.aside
 
     @property
     def unknowns(self) -> Array:
@@ -98,31 +98,33 @@ class Equilibrium:
 
     def discretisation(self, factor: float = 1.0) -> Discretisation:
         """The body as it is now, under `factor` times its scene's load."""
-        values = self.start.values * factor
+        values = self.sound.values * factor
         values[:, self.aside] = np.nan
         return replace(
-            self.start,
+            self.sound,
             bonds=self.bonds,
             operator=self.operator,
             values=values,
-            load=self.start.load * factor,
-            pull=None if self.start.pull is None else self.start.pull * factor,
+            load=self.sound.load * factor,
+            nodal_load=None if self.sound.nodal_load is None else self.sound.nodal_load * factor,
             prescribed=self.prescribed,
         )
 
     def solution(self, factor: float) -> Solution:
         """The last equilibrium under `factor` times the load, for recovery."""
-        operator, stability = self.operator, self.start.stability
+        operator, stability = self.operator, self.sound.stability
         statistics = Statistics(
-            particles=self.start.lattice.count,
-            unknowns=operator.shape[0] if operator.fixed is None else int((~operator.fixed).sum()),
+            particles=self.sound.lattice.count,
+            unknowns=operator.shape[0]
+            if operator.identity_rows is None
+            else int((~operator.identity_rows).sum()),
             bonds=operator.directed_bonds,
             method=f"fracture, {type(self.preconditioner).__name__}",
-            sign=stability.sign,
+            kind=stability.kind,
             margin=stability.margin,
             iterations=self.iterations,
             residual=self.residual,
-            setup_seconds=self.start.seconds,
+            setup_seconds=self.sound.seconds,
             solve_seconds=self.seconds,
             peak_memory=0,
         )
@@ -135,24 +137,24 @@ class Equilibrium:
         With `others`, values of all unknowns and zero at the surface's nodes, half the mutual
         energy of the two fields.
         """
-        surface = self.operator.surface
+        surface = self.operator.ended_stiffness
         if surface is None:
             return 0.0
         values = np.nan_to_num(self.unknowns[:, surface.particles])
-        nodal = surface.nodal(values, self.start.pull)
+        nodal = surface.nodal(values, self.sound.nodal_load)
         if others is None:
             found = surface.energy(values, nodal, values, nodal)
         else:
             found = surface.energy(values, nodal, others[:, surface.particles], 0.0 * nodal)
-        return found * self.start.family.cell
+        return found * self.sound.family.cell_area
 
     def surface_load_work(self) -> float:
         """Σ f·u of the loads on the surface's nodes at unit load, J per unit thickness."""
-        surface, pull = self.operator.surface, self.start.pull
-        if surface is None or pull is None:
+        surface, nodal_load = self.operator.ended_stiffness, self.sound.nodal_load
+        if surface is None or nodal_load is None:
             return 0.0
-        nodal = surface.nodal(np.nan_to_num(self.unknowns[:, surface.particles]), pull)
-        return float((pull[:, surface.nodes] * nodal).sum()) * self.start.family.cell
+        nodal = surface.nodal(np.nan_to_num(self.unknowns[:, surface.particles]), nodal_load)
+        return float((nodal_load[:, surface.nodes] * nodal).sum()) * self.sound.family.cell_area
 
     # ---- changes ------------------------------------------------------------------------
 
@@ -161,7 +163,7 @@ class Equilibrium:
         self.bonds = self.bonds.breaking(offsets, origins)
         self.gone += len(offsets)
         # What prescribed particles exert changes only with bonds of theirs.
-        touched: Mask = np.logical_or.reduce(self.start.prescribed, axis=0)
+        touched: Mask = np.logical_or.reduce(self.sound.prescribed, axis=0)
         if touched[origins].any() or touched[ends].any():
             self.rhs = None
         self.operator = BondOperator(self.bonds, self.operator.moduli, self.prescribed)
@@ -176,9 +178,11 @@ class Equilibrium:
         """
         unknowns = self.unknowns
         self.aside[particles] = True
-        nodes = None if self.operator.surface is None else self.operator.surface.nodes
+        nodes = (
+            None if self.operator.ended_stiffness is None else self.operator.ended_stiffness.nodes
+        )
         self.bonds = self.bonds.without_ends(particles)
-        if self.start.load[:, self.aside].any() or self._unloaded(nodes):
+        if self.sound.load[:, self.aside].any() or self._unloaded(nodes):
             raise MechanismError("a part on which a load acts has come loose")
         if self.prescribed.all():
             raise MechanismError("all of the body that was free has come loose")
@@ -189,12 +193,12 @@ class Equilibrium:
 
     def _unloaded(self, nodes: Indices | None) -> bool:
         """Whether loads act on nodes at which bonds ended and no longer do."""
-        if nodes is None or self.start.pull is None:
+        if nodes is None or self.sound.nodal_load is None:
             return False
-        left = np.zeros(self.start.pull.shape[1], dtype=bool)
+        left = np.zeros(self.sound.nodal_load.shape[1], dtype=bool)
         if self.bonds.ended is not None:
             left[self.bonds.ended.outline.edges[self.bonds.ended.edge]] = True
-        return bool(self.start.pull[:, nodes[~left[nodes]]].any())
+        return bool(self.sound.nodal_load[:, nodes[~left[nodes]]].any())
 
     def slack(self) -> Indices:
         """Particles whose own bonds leave them a motion without stiffness."""
@@ -209,7 +213,7 @@ class Equilibrium:
 
     def hinged(self) -> Indices:
         """Particles that can move without straining a bond (slow: only after a failed solve)."""
-        return mechanisms.zero_energy_particles(method.positive(self.operator, self.sign))
+        return mechanisms.zero_energy_particles(method.positive(self.operator, self.kind))
 
     # ---- solving ------------------------------------------------------------------------
 
@@ -233,15 +237,15 @@ class Equilibrium:
             if self.rhs is None:
                 self.rhs = self.discretisation().right_hand_side()
             rhs = self.rhs
-            if operator.fixed is not None:
-                given = self.start.values[:, operator.active]
-                self.x.reshape(given.shape)[operator.fixed] = given[operator.fixed]
+            if operator.identity_rows is not None:
+                given = self.sound.values[:, operator.active]
+                self.x.reshape(given.shape)[operator.identity_rows] = given[operator.identity_rows]
             before = self.x
             left = rhs - operator.matvec(before)
             refreshed = self._prepare()
             task = Task(rhs, before, tolerance, self.max_iterations)
             assert self.preconditioner is not None
-            self.x, iterations = method.iterate(operator, self.sign, self.preconditioner, task)
+            self.x, iterations = method.iterate(operator, self.kind, self.preconditioner, task)
             right = rhs - operator.matvec(self.x)
             size, after = float(np.linalg.norm(rhs)), float(np.linalg.norm(right))
             residual = after / size if size else 0.0
@@ -259,7 +263,7 @@ class Equilibrium:
                     f"{iterations} iterations; {tolerance:.1e} was asked for"
                 )
             released = 0.5 * float((self.x - before) @ (left + right))
-        return Step(iterations, refreshed, released * self.start.family.cell)
+        return Step(iterations, refreshed, released * self.sound.family.cell_area)
 
     def _prepare(self) -> bool:
         """Make or bring up to date the preconditioner where it is due; whether it was."""
@@ -267,8 +271,8 @@ class Equilibrium:
         if isinstance(known, TwoLevel):
             if not self.worn:
                 return False
-            self.preconditioner = known.updated(method.positive(self.operator, self.sign))
+            self.preconditioner = known.updated(method.positive(self.operator, self.kind))
         else:
-            self.preconditioner = method.preconditioner(self.operator, self.sign)
+            self.preconditioner = method.preconditioner(self.operator, self.kind)
         self.built = self.gone
         return True

@@ -40,7 +40,7 @@ class Growth:
     Attributes
     ----------
     scene : Scene
-    factor : float
+    load_factor : float
         Load factor now.
     history : History
         Loads, energies, counts and the crack's advance at every equilibrium.
@@ -62,7 +62,7 @@ class Growth:
         max_iterations: int,
         monitors: Mapping[str, Callable[[Growth], float]],
     ) -> None:
-        start = scene.discretise(growing=True)
+        start = scene.discretise(sharp_tips=False)
         self.scene, self.programme, self.reason = scene, programme, ""
         self.bonds = Breakable(start, toughness, no_fail, tension_only, criterion)
         self.batch = _batch_size(batch, start.family.offsets)
@@ -72,7 +72,7 @@ class Growth:
         self.options = (tension_only, criterion, self.batch, tolerance, max_iterations)
         self.history = History(tuple(monitors))
         self._monitors = monitors
-        self.factor, self.target, self.resting = programme.start, 0, True
+        self.load_factor, self.target, self.resting = programme.start, 0, True
         # Whether the last equilibrium keeps the tolerance, or is one within an avalanche.
         self.precise = True
         self.log: list[tuple[int, int, float, bool]] = []
@@ -85,16 +85,16 @@ class Growth:
 
     @property
     def breaks(self) -> NDArray[Any]:
-        """Broken bonds in their order: fields offset (half), origin, step, factor.
+        """Broken bonds in their order: fields offset (half), origin, step, load_factor.
 
-        `step` is the number of the solve before which the bond broke, `factor` the load then.
-        Bonds of one batch are in no order.
+        `step` is the number of the solve before which the bond broke. Bonds of one batch are in
+        no order.
         """
         kept = [b[:3] for b in self.log if not b[3]]
         count = self.bonds.lattice.count
         return np.array(
             [(b // count, b % count, step, factor) for b, step, factor in kept],
-            dtype=[("offset", "i8"), ("origin", "i8"), ("step", "i8"), ("factor", "f8")],
+            dtype=[("offset", "i8"), ("origin", "i8"), ("step", "i8"), ("load_factor", "f8")],
         )
 
     @property
@@ -112,7 +112,7 @@ class Growth:
     @property
     def broken(self) -> Mask:
         """Broken bonds as `Scene.broken` returns them, shape (family size / 2, N)."""
-        mask = np.zeros(self.bonds.factors.shape, dtype=bool)
+        mask = np.zeros(self.bonds.strengths.shape, dtype=bool)
         mask.ravel()[self.broken_bonds] = True
         return mask
 
@@ -165,12 +165,12 @@ class Growth:
     @property
     def unknowns(self) -> Array:
         """u1, u2 and θ Δx under the present load, shape (components, N)."""
-        return self.factor * self.body.unknowns
+        return self.load_factor * self.body.unknowns
 
     @property
     def solution(self) -> Solution:
         """The present equilibrium as a solution, for `solver.recovery` and export."""
-        return self.body.solution(self.factor)
+        return self.body.solution(self.load_factor)
 
     # ---- what happens ---------------------------------------------------------------------
 
@@ -179,7 +179,7 @@ class Growth:
         step = self.body.solve()
         self.solves.append((0, step.iterations, step.refreshed))
         self.ledger.opened()
-        self.ledger.move(0.0, self.factor)
+        self.ledger.move(0.0, self.load_factor)
         self.record()
 
     def proceed(self) -> None:
@@ -189,7 +189,7 @@ class Growth:
             self._follow(utilisation)
             return
         # Bonds are overloaded where λ² q ≥ 1.
-        least = 1.0 / self.factor**2 if self.factor else np.inf
+        least = 1.0 / self.load_factor**2 if self.load_factor else np.inf
         batch, _ = next_batch(utilisation, least, self.batch)
         if len(batch):
             self.resting = False
@@ -211,8 +211,8 @@ class Growth:
         if not np.isfinite(event) and not np.isfinite(target):
             self.reason = "no load breaks another bond"
             return
-        if target > self.factor and event <= target * (1 + TIE):
-            self._move(self.programme.reach(max(event, self.factor), target))
+        if target > self.load_factor and event <= target * (1 + TIE):
+            self._move(self.programme.reach(max(event, self.load_factor), target))
             self.record()
             return
         if not np.isfinite(target):
@@ -262,8 +262,8 @@ class Growth:
         return event if event * np.sqrt(_NOISE) < before else float(np.inf)
 
     def _move(self, factor: float) -> None:
-        self.ledger.move(self.factor, factor)
-        self.factor = factor
+        self.ledger.move(self.load_factor, factor)
+        self.load_factor = factor
 
     def _break(self, batch: Indices) -> None:
         if self._at_edge is not None and self._parts_an_edge(batch):
@@ -272,7 +272,7 @@ class Growth:
                 "use surface='volume' beyond"
             )
             return
-        self.ledger.broken(batch, self.factor)
+        self.ledger.broken(batch, self.load_factor)
         self._remove(batch, dropped=False)
         self._drop(self.body.slack())
         # Within an avalanche it is enough to tell overloaded bonds from others.
@@ -294,11 +294,11 @@ class Growth:
             step = self.body.solve(tolerance)
         self.precise = tolerance is None or tolerance <= self.body.tolerance
         self.solves.append((broken, step.iterations, step.refreshed))
-        self.ledger.solved(step, self.factor)
+        self.ledger.solved(step, self.load_factor)
 
     def _remove(self, bonds: Indices, dropped: bool) -> None:
         step = len(self.solves)
-        self.log += [(int(b), step, self.factor, dropped) for b in bonds]
+        self.log += [(int(b), step, self.load_factor, dropped) for b in bonds]
         self.bonds.remove(bonds)
         self.body.break_bonds(*self.bonds.ends(bonds))
 
@@ -306,7 +306,7 @@ class Growth:
         """Set aside particles that cannot carry load, and others that this leaves slack."""
         while len(particles):
             bonds = self.bonds.of_particles(particles)
-            self.ledger.dropped(bonds, self.factor)
+            self.ledger.dropped(bonds, self.load_factor)
             if len(bonds):
                 self._remove(bonds, dropped=True)
             self.body.set_aside(particles)
@@ -316,8 +316,8 @@ class Growth:
         """Another line of the history."""
         steps, tip = self.steps, self.tip
         self.history.add(
-            factor=self.factor,
-            **self.ledger.row(self.factor),
+            load_factor=self.load_factor,
+            **self.ledger.row(self.load_factor),
             broken=len(self.broken_bonds),
             loose=int(self.loose.sum()),
             solves=len(steps),

@@ -35,9 +35,9 @@ class Ledger:
 
     def _load_work(self) -> float:
         """Σ f·u Δv of the loads at unit load, prescribed unknowns left out."""
-        start = self.body.start
+        start = self.body.sound
         free = np.where(self.body.prescribed, 0.0, start.load)
-        found = float((free * np.nan_to_num(self.body.unknowns)).sum()) * start.family.cell
+        found = float((free * np.nan_to_num(self.body.unknowns)).sum()) * start.family.cell_area
         return found + self.body.surface_load_work()
 
     def _support_work(self) -> float:
@@ -46,7 +46,7 @@ class Ledger:
         From bond forces, not from the stored energy: the mutual energy of the present field and
         the field that is the prescribed values and zero elsewhere.
         """
-        prescribed = np.where(self.body.start.prescribed, self.body.start.values, 0.0)
+        prescribed = np.where(self.body.sound.prescribed, self.body.sound.values, 0.0)
         bonds = self.bonds.stored(self.body.unknowns, prescribed)
         return 2.0 * (bonds + self.body.surface_energy(prescribed))
 
@@ -58,33 +58,33 @@ class Ledger:
         """The load factor changes while no bond breaks."""
         self.work += 0.5 * (after**2 - before**2) * (self._support_work() + self.deflection)
 
-    def broken(self, bonds: Indices, factor: float) -> None:
+    def broken(self, bonds: Indices, load_factor: float) -> None:
         """Bonds are about to break under this load factor."""
         cost = float(self.bonds.cost_of(bonds).sum())
         self.dissipated += cost
-        self.excess += self._held(bonds, factor) - cost
+        self.excess += self._held(bonds, load_factor) - cost
 
-    def dropped(self, bonds: Indices, factor: float) -> None:
+    def dropped(self, bonds: Indices, load_factor: float) -> None:
         """Bonds of parts that are set aside go, without cost."""
-        self.excess += self._held(bonds, factor)
+        self.excess += self._held(bonds, load_factor)
 
-    def _held(self, bonds: Indices, factor: float) -> float:
-        return factor**2 * float(self.bonds.energy_of(self.body.unknowns, bonds).sum())
+    def _held(self, bonds: Indices, load_factor: float) -> float:
+        return load_factor**2 * float(self.bonds.energy_of(self.body.unknowns, bonds).sum())
 
-    def solved(self, step: Step, factor: float) -> None:
+    def solved(self, step: Step, load_factor: float) -> None:
         """A new equilibrium was found at this factor."""
         deflection = self._load_work()
-        self.work += factor**2 * (deflection - self.deflection)
-        self.excess += factor**2 * step.released
+        self.work += load_factor**2 * (deflection - self.deflection)
+        self.excess += load_factor**2 * step.released
         self.deflection = deflection
 
-    def row(self, factor: float) -> dict[str, float]:
+    def row(self, load_factor: float) -> dict[str, float]:
         """What the history holds of it, see `History`."""
         return {
-            "force": factor * self._support_work(),
-            "displacement": factor * self.deflection,
+            "force": load_factor * self._support_work(),
+            "displacement": load_factor * self.deflection,
             "work": self.work,
-            "stored": factor**2 * self._stored(),
+            "stored": load_factor**2 * self._stored(),
             "dissipated": self.dissipated,
             "excess": self.excess,
         }
@@ -99,7 +99,7 @@ class History:
 
     Columns
     -------
-    factor
+    load_factor
         Load factor λ.
     force
         What is conjugate to λ in the work of the supports, dW = force dλ: Σ R·Û, with the
@@ -117,7 +117,7 @@ class History:
     """
 
     NAMES = (
-        "factor",
+        "load_factor",
         "force",
         "displacement",
         "work",

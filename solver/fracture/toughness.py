@@ -292,5 +292,7 @@ def _cut_sum(family: Family, critical: Array, normal: ArrayLike) -> Array:
     half = family.size // 2
     angle = np.asarray(normal, dtype=np.float64)
     direction = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    met = np.abs(direction @ (family.length[:half, None] * family.normal[:half]).T) / family.cell
-    return met @ (critical[:half] * family.weight[:half] * family.cell**2)
+    met = (
+        np.abs(direction @ (family.length[:half, None] * family.normal[:half]).T) / family.cell_area
+    )
+    return met @ (critical[:half] * family.weight[:half] * family.cell_area**2)

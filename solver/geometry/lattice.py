@@ -93,7 +93,7 @@ class Lattice:
         return mask
 
     @cached_property
-    def cells(self) -> tuple[Indices, Indices]:
+    def rows_columns(self) -> tuple[Indices, Indices]:
         """Row and column of each particle on the padded grid."""
         rows, columns = np.nonzero(self.mask)
         return rows, columns
@@ -101,13 +101,13 @@ class Lattice:
     @property
     def count(self) -> int:
         """Number of particles N."""
-        return len(self.cells[0])
+        return len(self.rows_columns[0])
 
     @cached_property
     def points(self) -> Array:
         """Centres, shape (N, 2), m."""
         x, y = self.axes
-        rows, columns = self.cells
+        rows, columns = self.rows_columns
         return np.column_stack([x[columns], y[rows]])
 
     @cached_property

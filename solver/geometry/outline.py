@@ -56,7 +56,7 @@ class Outline:
 
     @classmethod
     def of(
-        cls, region: Region, cracks: Sequence[Crack], spacing: float, joined: bool = True
+        cls, region: Region, cracks: Sequence[Crack], spacing: float, sharp_tips: bool = True
     ) -> Outline:
         """Outline of a region with cracks.
 
@@ -66,7 +66,7 @@ class Outline:
         cracks : sequence of Crack
         spacing : float
             Of the lattice, m.
-        joined : bool
+        sharp_tips : bool
             Whether the two faces of a crack share the node of each tip. They must not once the
             crack grows.
         """
@@ -95,7 +95,7 @@ class Outline:
                 size -= 1
                 order[-1] = 0
             chain(line[:size], np.column_stack([order[:-1], order[1:]]), 1)
-            if joined and not crack.closed:
+            if sharp_tips and not crack.closed:
                 # The right face shares the nodes of tips; a mouth, on the edge or beyond, is none.
                 x, y = line[[0, -1]].T
                 first, last = region.contains(x, y) & (region.edge_distance(x, y) > _TIE * spacing)

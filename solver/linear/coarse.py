@@ -54,7 +54,7 @@ class Hats:
     Parameters
     ----------
     operator : BondOperator
-    cells : int
+    coarsening : int
         Distance of the coarse nodes in cells of the lattice.
 
     Attributes
@@ -67,11 +67,11 @@ class Hats:
         Coarse node of each hat, row by row `width` to a row, and the piece of its support.
     """
 
-    def __init__(self, operator: BondOperator, cells: int) -> None:
-        self.operator, self.cells = operator, int(cells)
+    def __init__(self, operator: BondOperator, coarsening: int) -> None:
+        self.operator, self.coarsening = operator, int(coarsening)
         lattice = operator.bonds.lattice
-        rows, columns = (axis[operator.active] for axis in lattice.cells)
-        h, count = self.cells, len(rows)
+        rows, columns = (axis[operator.active] for axis in lattice.rows_columns)
+        h, count = self.coarsening, len(rows)
         row, column, fy, fx = rows // h, columns // h, (rows % h) / h, (columns % h) / h
         self.width = lattice.shape[1] // h + 2
         here = row * self.width + column
@@ -97,20 +97,20 @@ class Hats:
         bonds, lattice = operator.bonds, operator.bonds.lattice
         piece = np.zeros(node.shape, dtype=np.int64)
         broken = np.zeros(lattice.count, dtype=bool)
-        broken[bonds.special] = ((bonds.factors == 0) & bonds.exist(bonds.special)).any(axis=0)
+        broken[bonds.special] = ((bonds.strengths == 0) & bonds.exist(bonds.special)).any(axis=0)
         broken = broken[operator.active]
         if not broken.any():
             return piece
         suspects = np.unique(node[broken][weight[broken] > 0])
         # Pieces are what the nearest intact bonds connect.
         number = np.full(lattice.shape, -1, dtype=np.int64)
-        rows, columns = (axis[operator.active] for axis in lattice.cells)
+        rows, columns = (axis[operator.active] for axis in lattice.rows_columns)
         number[rows, columns] = np.arange(len(rows))
         links = []
         for o in np.argsort(bonds.family.length, kind="stable")[:8]:
             dx, dy = bonds.family.offsets[o]
             neighbour = number[rows + dy, columns + dx]
-            links.append(np.where(bonds.factor(int(o))[operator.active] != 0, neighbour, -1))
+            links.append(np.where(bonds.strength(int(o))[operator.active] != 0, neighbour, -1))
         slots = np.argsort(node.ravel(), kind="stable")
         sorted_nodes = node.ravel()[slots]
         first = np.searchsorted(sorted_nodes, suspects)
@@ -157,7 +157,7 @@ class Hats:
         -------
         csc_array, shape (components·count, components·count)
         """
-        operator, h, c = self.operator, self.cells, self.operator.components
+        operator, h, c = self.operator, self.coarsening, self.operator.components
         reach = operator.bonds.family.reach
         # Offsets of nodes whose hats can meet through a bond, and the period that keeps the
         # hats of one colour apart.
@@ -204,19 +204,21 @@ class Hats:
             )
         return sparse.coo_array((data, (i, j)), shape=(size, size)).tocsc()
 
-    def surface(self) -> sparse.csr_array | None:
+    def ended(self) -> sparse.csr_array | None:
         """Pᵀ S P of what the surface's nodes add, which reaches too far to be probed."""
-        if self.operator.surface is None:
+        if self.operator.ended_stiffness is None:
             return None
-        return self.operator.surface.condensed(self.operator.surface_basis(self.prolongation))
+        return self.operator.ended_stiffness.condensed(
+            self.operator.surface_basis(self.prolongation)
+        )
 
     def _stale(self, changed: Indices | None) -> NDArray[np.bool_]:
         """Hats whose image under K may differ because of particles with changed bonds."""
-        h, lattice = self.cells, self.operator.bonds.lattice
+        h, lattice = self.coarsening, self.operator.bonds.lattice
         nodes = np.zeros((lattice.shape[0] // h + 2, self.width), dtype=bool)
         if changed is not None and len(changed):
             particles = self.operator.active[changed]
-            rows, columns = (axis[particles] for axis in lattice.cells)
+            rows, columns = (axis[particles] for axis in lattice.rows_columns)
             far = h + self.operator.bonds.family.reach
             for dr in range(-far, far + 1, h):
                 for dc in range(-far, far + 1, h):
@@ -255,7 +257,7 @@ class _Probe:
         """Turn to other hats; their rows of windows do not overlap."""
         hats, operator = self.hats, self.hats.operator
         self.lit = lit
-        margin = hats.cells - 1 + operator.bonds.family.reach
+        margin = hats.coarsening - 1 + operator.bonds.family.reach
         row, column = np.divmod(hats.node[lit], hats.width)
         # One window for all lit hats of a node row: short runs of particles cost the kernel more
         # than the gaps between the hats do.
@@ -264,7 +266,7 @@ class _Probe:
         np.minimum.at(low, group, column)
         np.maximum.at(high, group, column)
         spread = np.array([-margin, -margin, margin, margin])
-        boxes = hats.cells * np.column_stack([rows, low, rows, high]) + spread
+        boxes = hats.coarsening * np.column_stack([rows, low, rows, high]) + spread
         self.segments = operator.windows(boxes)
         _, size, first = self.segments[:, :3].astype(np.int64).T
         # Positions first, first + 1, … of every segment.

@@ -40,7 +40,7 @@ class RotationBlock(LinearOperator):
     def _matvec(self, theta: Array) -> Array:
         operator = self.operator
         theta = np.ascontiguousarray(theta, dtype=np.float64).ravel()
-        fixed = None if operator.fixed is None else operator.fixed[2]
+        fixed = None if operator.identity_rows is None else operator.identity_rows[2]
         given = theta if fixed is None else np.where(fixed, 0.0, theta)
         kernels.scatter(operator.segments, given[None], self._grid)
         out = np.empty((1, len(theta)))
@@ -51,10 +51,10 @@ class RotationBlock(LinearOperator):
             self._blocks,
             self._bulk,
             self._diagonal,
-            operator.bonds.factors,
+            operator.bonds.strengths,
             out,
         )
-        if operator.surface is not None:
+        if operator.ended_stiffness is not None:
             turned = np.zeros((3, len(theta)))
             turned[2] = given
             out[0] -= operator.nodes_reaction(turned)[2]
@@ -79,8 +79,8 @@ class Condensed(LinearOperator):
         self.operator, self.count = operator, count
         self.block = RotationBlock(operator)
         diagonal = -operator.block_diagonal[:, 2, 2]
-        if operator.fixed is not None:
-            diagonal = np.where(operator.fixed[2], 1.0, diagonal)
+        if operator.identity_rows is not None:
+            diagonal = np.where(operator.identity_rows[2], 1.0, diagonal)
         if diagonal.min(initial=1.0) <= 0:
             raise NegativeCurvatureError(
                 "a particle's rotation stiffness is not negative where the bulk's is: condensing "
@@ -115,7 +115,7 @@ class Condensed(LinearOperator):
         first = self.operator.product(self._field(u, None), masked=True)
         second = self.operator.product(self._field(None, self.rotations(first[2])), masked=True)
         out = first[:2] - second[:2]
-        fixed = self.operator.fixed
+        fixed = self.operator.identity_rows
         if fixed is not None:
             out[fixed[:2]] = self.operator.identity_scale * u.reshape(2, -1)[fixed[:2]]
         return out.ravel()
@@ -128,8 +128,8 @@ class Condensed(LinearOperator):
         force = rhs.reshape(3, -1)
         moment = (
             force[2]
-            if self.operator.fixed is None
-            else np.where(self.operator.fixed[2], 0.0, force[2])
+            if self.operator.identity_rows is None
+            else np.where(self.operator.identity_rows[2], 0.0, force[2])
         )
         second = self.operator.product(self._field(None, self.rotations(moment)), masked=True)
         return (force[:2] - second[:2]).ravel()
@@ -138,7 +138,7 @@ class Condensed(LinearOperator):
         """The full solution from its displacements."""
         force = rhs.reshape(3, -1)
         moment = force[2] - self.operator.product(self._field(u, None), masked=True)[2]
-        fixed = self.operator.fixed
+        fixed = self.operator.identity_rows
         if fixed is not None:
             moment = np.where(fixed[2], 0.0, moment)
         values = self._field(u, self.rotations(moment))

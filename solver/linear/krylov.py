@@ -22,7 +22,7 @@ class Task:
 
     Attributes
     ----------
-    rhs, start : ndarray
+    rhs, guess : ndarray
         Right-hand side and first guess.
     tolerance : float
         Of |rhs − K x| / |rhs|.
@@ -31,7 +31,7 @@ class Task:
     """
 
     rhs: Array
-    start: Array
+    guess: Array
     tolerance: float
     limit: int
 
@@ -76,7 +76,7 @@ def conjugate_gradients(
         If the operator turns out not to be positive.
     """
     guarded, counter = _Guarded(operator), _Counter()
-    x, size = task.start.copy(), float(np.linalg.norm(task.rhs))
+    x, size = task.guess.copy(), float(np.linalg.norm(task.rhs))
     for _ in range(_RESTARTS):
         # Solve for the correction: its residual is small, so nothing is lost to cancellation.
         defect = task.rhs - operator.matvec(x)
@@ -98,7 +98,7 @@ def condensed_gradients(
     """Solve an indefinite body by `conjugate_gradients` on its displacements alone."""
     condensed = Condensed(operator)
     inverse, rhs = condensed.preconditioner(preconditioner), condensed.condense(task.rhs)
-    x, count, wanted = task.start, 0, task.tolerance
+    x, count, wanted = task.guess, 0, task.tolerance
     for _ in range(_RESTARTS):
         displacement = x.reshape(3, -1)[:2].ravel()
         part = Task(rhs, displacement, wanted, task.limit - count)

@@ -1,4 +1,4 @@
-"""The method that the sign of an operator asks for, for every analysis.
+"""The method that the kind of an operator asks for, for every analysis.
 
 positive, central (no rotations)
     Conjugate gradients (SciPy) with the two-level preconditioner. A direction of non-positive
@@ -31,14 +31,14 @@ Preconditioner = Literal["auto", "two-level", "block-jacobi"]
 _TWO_LEVEL = 2_000
 
 
-def positive(operator: BondOperator, sign: str) -> BondOperator:
+def positive(operator: BondOperator, kind: str) -> BondOperator:
     """The operator, or its positive companion if it is indefinite."""
-    return operator.companion() if sign == "indefinite" else operator
+    return operator.companion() if kind == "indefinite" else operator
 
 
 def preconditioner(
     operator: BondOperator,
-    sign: str,
+    kind: str,
     choice: Preconditioner = "auto",
     earlier: LinearOperator | None = None,
 ) -> LinearOperator:
@@ -47,7 +47,7 @@ def preconditioner(
     Parameters
     ----------
     operator : BondOperator
-    sign : str
+    kind : str
         See `solver.material.stability.Stability`.
     choice : {"auto", "two-level", "block-jacobi"}
     earlier : LinearOperator, optional
@@ -64,14 +64,14 @@ def preconditioner(
         )
     small = operator.shape[0] < _TWO_LEVEL
     if choice == "block-jacobi" or (choice == "auto" and small):
-        return BlockJacobi(positive(operator, sign))
+        return BlockJacobi(positive(operator, kind))
     if isinstance(earlier, TwoLevel):
-        return earlier.updated(positive(operator, sign))
-    return TwoLevel(positive(operator, sign))
+        return earlier.updated(positive(operator, kind))
+    return TwoLevel(positive(operator, kind))
 
 
 def iterate(
-    operator: BondOperator, sign: str, preconditioner: LinearOperator, task: Task
+    operator: BondOperator, kind: str, preconditioner: LinearOperator, task: Task
 ) -> tuple[Array, int]:
     """Solve a task; returns the solution and the number of iterations.
 
@@ -82,17 +82,17 @@ def iterate(
     """
     if not task.rhs.any():
         return np.zeros_like(task.rhs), 0
-    if sign == "indefinite":
+    if kind == "indefinite":
         return condensed_gradients(operator, preconditioner, task)
     return conjugate_gradients(operator, preconditioner, task)
 
 
-def name(sign: str, preconditioner: LinearOperator | None) -> str:
+def name(kind: str, preconditioner: LinearOperator | None) -> str:
     """What `iterate` does, in words."""
     if preconditioner is None:
         return "nothing to solve"
     levels = "two-level" if isinstance(preconditioner, TwoLevel) else "block Jacobi"
-    on = "CG on condensed displacements" if sign == "indefinite" else "CG"
+    on = "CG on condensed displacements" if kind == "indefinite" else "CG"
     return f"{on}, {levels}"
 
 

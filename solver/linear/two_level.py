@@ -32,7 +32,7 @@ from .coarse import Hats
 # balance of set-up and iterations from 4 to 12 cells. In conduction the coarse matrix is cheap
 # and anisotropy stronger, so nodes are closer. Larger lattices coarsen more, so that the
 # factorisation stays small beside the products.
-_CELLS = {1: 6, 2: 8, 3: 8}
+_COARSENING = {1: 6, 2: 8, 3: 8}
 _LARGEST_COARSE = 60_000
 # Ratio of the ends of the interval on which the polynomial is small: shorter waves than the
 # coarse grid resolves.
@@ -95,7 +95,7 @@ class TwoLevel(LinearOperator):
     operator : BondOperator
         Symmetric positive definite. For an indefinite body hand over its companion, see
         `solver.analyses.statics`.
-    cells : int, optional
+    coarsening : int, optional
         Distance of the coarse nodes in lattice cells; by default 8 (6 in conduction), more for
         lattices whose coarse matrix would exceed 60,000 unknowns.
     degree : int
@@ -117,7 +117,7 @@ class TwoLevel(LinearOperator):
     def __init__(
         self,
         operator: BondOperator,
-        cells: int | None = None,
+        coarsening: int | None = None,
         degree: int = 2,
         regularisation: float = _REGULARISATION,
         previous: TwoLevel | None = None,
@@ -127,10 +127,10 @@ class TwoLevel(LinearOperator):
         begun = perf_counter()
         self.operator, self.degree = operator, int(degree)
         self.jacobi = BlockJacobi(operator)
-        if cells is None:
+        if coarsening is None:
             largest = np.sqrt(operator.shape[0] / _LARGEST_COARSE)
-            cells = max(_CELLS[operator.components], int(np.ceil(largest)))
-        self.hats = Hats(operator, cells)
+            coarsening = max(_COARSENING[operator.components], int(np.ceil(largest)))
+        self.hats = Hats(operator, coarsening)
         self._regularisation = regularisation
         known = changed = None
         if previous is not None:
@@ -141,8 +141,8 @@ class TwoLevel(LinearOperator):
             self.hats.galerkin(known, changed) if coarse is None else coarse
         )
         #: Galerkin matrix of the surface's nodes, which the bonds do not change.
-        self.surface = self.hats.surface()
-        whole = self.coarse if self.surface is None else (self.coarse + self.surface).tocsc()
+        self.ended = self.hats.ended()
+        whole = self.coarse if self.ended is None else (self.coarse + self.ended).tocsc()
         self._solve = _factorise(whole, regularisation)
         self.largest = self._largest_eigenvalue()
         #: Wall time of the set-up, s.
@@ -155,7 +155,7 @@ class TwoLevel(LinearOperator):
         """
         return TwoLevel(
             operator,
-            self.hats.cells,
+            self.hats.coarsening,
             self.degree,
             self._regularisation,
             self if same_unknowns(self.operator, operator) else None,
@@ -166,7 +166,7 @@ class TwoLevel(LinearOperator):
 
         The bound does not hold where blocks give way to the surface's nodes.
         """
-        if self.operator.moduli.non_negative and self.operator.surface is None:
+        if self.operator.moduli.non_negative and self.operator.ended_stiffness is None:
             return 2.0
         # A deterministic start with components along everything.
         vector = np.cos(1.7 * np.arange(self.shape[0]))
@@ -200,12 +200,12 @@ class TwoLevel(LinearOperator):
         c = self.operator.components
         x = self._smooth(residual)
         left = (residual - self.operator.matvec(x)).reshape(c, -1)
-        if self.operator.fixed is not None:
-            left[self.operator.fixed] = 0.0
+        if self.operator.identity_rows is not None:
+            left[self.operator.identity_rows] = 0.0
         coarse = self._solve(self.hats.restrict(left).ravel())
         correction = self.hats.prolong(coarse.reshape(c, -1))
-        if self.operator.fixed is not None:
-            correction[self.operator.fixed] = 0.0
+        if self.operator.identity_rows is not None:
+            correction[self.operator.identity_rows] = 0.0
         x += correction.ravel()
         x += self._smooth(residual - self.operator.matvec(x))
         return x
@@ -216,9 +216,9 @@ class TwoLevel(LinearOperator):
 
 def same_unknowns(one: BondOperator, other: BondOperator) -> bool:
     """Whether two operators act on the same unknowns of the same lattice, with the same moduli."""
-    fixed = (one.fixed is None) == (other.fixed is None)
-    if fixed and one.fixed is not None and other.fixed is not None:
-        fixed = np.array_equal(one.fixed, other.fixed)
+    fixed = (one.identity_rows is None) == (other.identity_rows is None)
+    if fixed and one.identity_rows is not None and other.identity_rows is not None:
+        fixed = np.array_equal(one.identity_rows, other.identity_rows)
     return bool(
         fixed
         and np.array_equal(one.bonds.lattice.mask, other.bonds.lattice.mask)
@@ -231,7 +231,7 @@ def changed_particles(one: BondOperator, other: BondOperator) -> NDArray[np.int6
     """Positions among the active particles of those whose bond factors differ."""
     differs = np.zeros(one.bonds.lattice.count, dtype=bool)
     both = np.union1d(one.bonds.special, other.bonds.special)
-    a, b = one.bonds.factors_of(both), other.bonds.factors_of(both)
+    a, b = one.bonds.strengths_of(both), other.bonds.strengths_of(both)
     differs[both] = (a != b).any(axis=0)
     return np.nonzero(differs[one.active])[0]
 

@@ -62,7 +62,7 @@ def remedy(family: Family, material: Material) -> str:
         other = Family(m, family.spacing * family.m / m, family.area_rule, family.influence)
         for calibration, law in remedies:
             found = _trial(other, material, calibration, law)
-            if found is None or found.sign == "inadmissible":
+            if found is None or found.kind == "inadmissible":
                 continue
             named = "" if law is None else f", law={type(law).__name__}()"
             where = "" if m == family.m else f" at m = {m}"
@@ -83,7 +83,7 @@ def _trial(
     except CalibrationError:
         return None
     coarse = assess(family, moduli, _REMEDY_GRID)
-    return coarse if coarse.sign == "inadmissible" else assess(family, moduli)
+    return coarse if coarse.kind == "inadmissible" else assess(family, moduli)
 
 
 def require_admissible(family: Family, moduli: Moduli) -> Stability:
@@ -96,7 +96,7 @@ def require_admissible(family: Family, moduli: Moduli) -> Stability:
         calibration, law or m that is stable for the same tensor if there is one.
     """
     found = assess(family, moduli)
-    if found.sign == "inadmissible":
+    if found.kind == "inadmissible":
         k1, k2 = found.wave_vector
         low, high = found.rotation_range
         if found.wave_vector == (0.0, 0.0):

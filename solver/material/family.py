@@ -168,6 +168,6 @@ class Family:
         return np.arctan2(self.offsets[:, 1], self.offsets[:, 0])
 
     @property
-    def cell(self) -> float:
+    def cell_area(self) -> float:
         """Δv = Δx² per unit thickness, m²."""
         return self.spacing**2

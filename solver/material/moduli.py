@@ -71,16 +71,16 @@ def conductive_moments(psi: Array) -> Array:
 
 def bond_weights(family: Family, material: Material) -> Array:
     """½ α Λ |ξ| Δv (elasticity) or ½ α Λ Δv (conduction) of each bond, shape (n,)."""
-    weight = 0.5 * family.weight * family.cell
+    weight = 0.5 * family.weight * family.cell_area
     return weight * family.length if isinstance(material, ElasticTensor) else weight
 
 
 def effective_tensor(family: Family, moduli: Moduli) -> Array:
     """The tensor that the lattice sums make: C with rotations condensed (3×3), or D (2×2)."""
     if isinstance(moduli, ConductiveModuli):
-        weight = 0.5 * family.weight * family.cell * moduli.conductivity
+        weight = 0.5 * family.weight * family.cell_area * moduli.conductivity
         return np.einsum("o,oi,oj->ij", weight, family.normal, family.normal)
-    weight = 0.5 * family.weight * family.cell * family.length
+    weight = 0.5 * family.weight * family.cell_area * family.length
     stretch, shear = stretch_rows(family.angle)
     axial, transverse = weight * moduli.normal, weight * moduli.shear
     tensor = (axial * stretch) @ stretch.T + (transverse * shear) @ shear.T

@@ -13,7 +13,7 @@ from .family import Family
 from .moduli import ElasticModuli, Moduli, effective_tensor
 from .symbol import brillouin_zone, margins, symbol
 
-Sign = Literal["positive", "central", "indefinite", "inadmissible"]
+Kind = Literal["positive", "central", "indefinite", "inadmissible"]
 
 # Rotation stiffness below this share of its largest possible value counts as none.
 _SINGULAR = 1e-9
@@ -25,7 +25,7 @@ class Stability:
 
     Attributes
     ----------
-    sign : {"positive", "central", "indefinite", "inadmissible"}
+    kind : {"positive", "central", "indefinite", "inadmissible"}
         Of the full operator: positive definite; positive with no shear stiffness (no rotations);
         indefinite with a positive condensed symbol; or unstable in bulk.
     margin : float
@@ -36,14 +36,14 @@ class Stability:
         Smallest and largest H_θθ over the zone, relative to Σ (w/2)|ξ||k_t|; zeros without shear.
     """
 
-    sign: Sign
+    kind: Kind
     margin: float
     wave_vector: tuple[float, float]
     rotation_range: tuple[float, float]
 
 
 def assess(family: Family, moduli: Moduli, count: int = 32) -> Stability:
-    """Sign and margin of a bond model in bulk.
+    """Kind and margin of a bond model in bulk.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def assess(family: Family, moduli: Moduli, count: int = 32) -> Stability:
     if isinstance(moduli, ElasticModuli) and moduli.has_shear:
         rotation = symbol(family, moduli, k)[:, 2, 2].real
         scale = 0.5 * float(
-            (family.weight * family.cell * family.length * np.abs(moduli.shear)).sum()
+            (family.weight * family.cell_area * family.length * np.abs(moduli.shear)).sum()
         )
         low, high = float(rotation.min()) / scale, float(rotation.max()) / scale
         if low <= _SINGULAR and high >= -_SINGULAR:
@@ -92,11 +92,11 @@ def assess(family: Family, moduli: Moduli, count: int = 32) -> Stability:
         )
         if found.fun < margin:
             margin, worst = float(found.fun), (found.x + np.pi) % (2 * np.pi) - np.pi
-    sign: Sign = "positive"
+    kind: Kind = "positive"
     if margin <= _SINGULAR:
-        sign = "inadmissible"
+        kind = "inadmissible"
     elif high < 0:
-        sign = "indefinite"
+        kind = "indefinite"
     elif isinstance(moduli, ElasticModuli) and not moduli.has_shear:
-        sign = "central"
-    return Stability(sign, margin, (float(worst[0]), float(worst[1])), (low, high))
+        kind = "central"
+    return Stability(kind, margin, (float(worst[0]), float(worst[1])), (low, high))

@@ -26,7 +26,7 @@ def _half(family: Family) -> tuple[Array, Array, Array, Array]:
     half = family.size // 2
     return (
         family.offsets[:half].astype(float),
-        2 * family.weight[:half] * family.cell,
+        2 * family.weight[:half] * family.cell_area,
         family.normal[:half],
         family.tangent[:half],
     )

@@ -15,7 +15,7 @@ def to_csr(operator: BondOperator) -> sparse.csr_array:
     bonds, lattice, c = operator.bonds, operator.bonds.lattice, operator.components
     count = len(operator.active)
     number = np.full(lattice.shape, -1, dtype=np.int64)
-    rows, columns = (axis[operator.active] for axis in lattice.cells)
+    rows, columns = (axis[operator.active] for axis in lattice.rows_columns)
     number[rows, columns] = np.arange(count)
     values: list[Array] = []
     ends: list[NDArray[np.int32]] = []
@@ -24,7 +24,7 @@ def to_csr(operator: BondOperator) -> sparse.csr_array:
     for o, (dx, dy) in enumerate(bonds.family.offsets):
         neighbour = number[rows + dy, columns + dx]
         here = np.nonzero(neighbour >= 0)[0]
-        factor = bonds.factor(o)[operator.active[here]]
+        factor = bonds.strength(o)[operator.active[here]]
         for a in range(c):
             for b in range(c):
                 # K_pq = [[−A, t̂], [−t̂ᵀ, c]]
@@ -44,11 +44,13 @@ def to_csr(operator: BondOperator) -> sparse.csr_array:
         (np.concatenate(values), (np.concatenate(starts), np.concatenate(ends))),
         shape=operator.shape,
     ).tocsr()
-    if operator.surface is not None:
-        matrix = sparse.csr_array(matrix + operator.surface.condensed(operator.surface_basis()))
-    if operator.fixed is not None:
-        free = sparse.diags_array((~operator.fixed).ravel().astype(np.float64))
-        identity = sparse.diags_array(operator.fixed.ravel() * operator.identity_scale)
+    if operator.ended_stiffness is not None:
+        matrix = sparse.csr_array(
+            matrix + operator.ended_stiffness.condensed(operator.surface_basis())
+        )
+    if operator.identity_rows is not None:
+        free = sparse.diags_array((~operator.identity_rows).ravel().astype(np.float64))
+        identity = sparse.diags_array(operator.identity_rows.ravel() * operator.identity_scale)
         matrix = (free @ matrix @ free + identity).tocsr()
     matrix.eliminate_zeros()
     return matrix

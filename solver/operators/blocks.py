@@ -16,7 +16,7 @@ def offset_blocks(bonds: Bonds, moduli: Moduli) -> Array:
     where no bond resists shear. Conduction: w k/|ξ|².
     """
     family = bonds.family
-    weight = family.weight * family.cell
+    weight = family.weight * family.cell_area
     if isinstance(moduli, ConductiveModuli):
         return (weight * moduli.conductivity / family.length**2)[:, None]
     n, t = family.normal, family.tangent

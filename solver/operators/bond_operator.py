@@ -33,24 +33,24 @@ class BondOperator(LinearOperator):
     ----------
     bonds : Bonds
     moduli : ElasticModuli or ConductiveModuli
-    fixed : ndarray of bool, shape (components, N)
+    prescribed : ndarray of bool, shape (components, N)
         Prescribed unknowns. Particles with all of them prescribed are not unknowns; single
         prescribed components of the others are kept as identity rows.
     """
 
-    def __init__(self, bonds: Bonds, moduli: Moduli, fixed: Mask) -> None:
+    def __init__(self, bonds: Bonds, moduli: Moduli, prescribed: Mask) -> None:
         self.bonds, self.moduli = bonds, moduli
         self.blocks: Array = offset_blocks(bonds, moduli)
         self.components = {6: 3, 3: 2, 1: 1}[self.blocks.shape[1]]
-        if fixed.shape != (self.components, bonds.lattice.count):
-            raise ValueError(f"fixed must have shape {(self.components, bonds.lattice.count)}")
+        if prescribed.shape != (self.components, bonds.lattice.count):
+            raise ValueError(f"prescribed must have shape {(self.components, bonds.lattice.count)}")
         #: Numbers of the active particles.
-        self.active: NDArray[np.int64] = np.nonzero(~fixed.all(axis=0))[0]
+        self.active: NDArray[np.int64] = np.nonzero(~prescribed.all(axis=0))[0]
         count = len(self.active)
         super().__init__(np.float64, (self.components * count, self.components * count))
-        partly = fixed[:, self.active]
+        partly = prescribed[:, self.active]
         #: Identity rows, shape (components, active), or None if there are none.
-        self.fixed: Mask | None = partly if partly.any() else None
+        self.identity_rows: Mask | None = partly if partly.any() else None
         self._grid = np.zeros((self.components, int(np.prod(bonds.lattice.shape))))
         self._kernel = {
             3: kernels.elastic_product,
@@ -67,14 +67,14 @@ class BondOperator(LinearOperator):
         #: Runs of particles of one kind, as the kernels read them.
         self.segments, self.diagonal = self._layout()
         #: Stiffness of the bonds that end at the surface, if there are any.
-        self.surface: SurfaceStiffness | None = None
+        self.ended_stiffness: SurfaceStiffness | None = None
         if bonds.ended is not None:
-            self.surface = stiffness_of(bonds.ended, bonds.family, moduli, self.components)
+            self.ended_stiffness = stiffness_of(bonds.ended, bonds.family, moduli, self.components)
             self._add_surface()
 
     def _add_surface(self) -> None:
         """Put the particles' part of the ended bonds into the diagonal blocks."""
-        surface = self.surface
+        surface = self.ended_stiffness
         assert surface is not None
         position = np.full(self.bonds.lattice.count, -1)
         position[self.active] = np.arange(len(self.active))
@@ -92,11 +92,11 @@ class BondOperator(LinearOperator):
 
     def nodes_reaction(self, values: Array) -> Array:
         """What the surface's nodes do to the active particles, both (components, active)."""
-        assert self.surface is not None
-        given = np.zeros((self.components, len(self.surface.particles)))
+        assert self.ended_stiffness is not None
+        given = np.zeros((self.components, len(self.ended_stiffness.particles)))
         given[:, self._on_surface] = values[:, self.at_surface]
         out = np.zeros_like(values)
-        self.add_at_surface(out, self.surface.reaction(given))
+        self.add_at_surface(out, self.ended_stiffness.reaction(given))
         return out
 
     def _layout(self) -> tuple[NDArray[np.uint64], Array]:
@@ -106,9 +106,9 @@ class BondOperator(LinearOperator):
         kind[bonds.short] = segments.TRUNCATED
         kind[bonds.special] = segments.SPECIAL
         kind = kind[self.active]
-        if self.fixed is not None:
+        if self.identity_rows is not None:
             # Their blocks differ for whoever inverts them.
-            kind[self.fixed.any(axis=0) & (kind == segments.BULK)] = segments.TRUNCATED
+            kind[self.identity_rows.any(axis=0) & (kind == segments.BULK)] = segments.TRUNCATED
         own = kind != segments.BULK
         diagonal = np.empty((len(self.bulk), int(own.sum())))
         truncated = self.active[kind == segments.TRUNCATED]
@@ -117,7 +117,7 @@ class BondOperator(LinearOperator):
         )
         special = bonds.column[self.active]
         diagonal[:, kind[own] == segments.SPECIAL] = self._diagonal_sums(
-            bonds.factors[:, special[kind == segments.SPECIAL]]
+            bonds.strengths[:, special[kind == segments.SPECIAL]]
         )
         found = segments.of(bonds.lattice, self.active, kind, np.cumsum(own) - 1, special)
         return found, diagonal
@@ -147,14 +147,18 @@ class BondOperator(LinearOperator):
         """
         segments = self.segments if segments is None else segments
         values = np.ascontiguousarray(values, dtype=np.float64)
-        masked_values = values if self.fixed is None else np.where(self.fixed, 0.0, values)
+        masked_values = (
+            values if self.identity_rows is None else np.where(self.identity_rows, 0.0, values)
+        )
         # Only cells of active particles are ever written: the others stay zero.
         kernels.scatter(segments, masked_values, self._grid)
         out = self.apply_grid(self._grid, segments, out)
-        if self.surface is not None and segments is self.segments:
+        if self.ended_stiffness is not None and segments is self.segments:
             out += self.nodes_reaction(masked_values)
-        if self.fixed is not None:
-            out[self.fixed] = 0.0 if masked else self.identity_scale * values[self.fixed]
+        if self.identity_rows is not None:
+            out[self.identity_rows] = (
+                0.0 if masked else self.identity_scale * values[self.identity_rows]
+            )
         return out
 
     def clear(self) -> None:
@@ -184,7 +188,7 @@ class BondOperator(LinearOperator):
             self.half_blocks,
             self.bulk,
             self.diagonal,
-            self.bonds.factors,
+            self.bonds.strengths,
             out,
         )
         return out
@@ -198,21 +202,21 @@ class BondOperator(LinearOperator):
     def coupling(self, prescribed: Array) -> Array:
         """K_fp u_p: rows of the active particles for prescribed values of shape (components, N)."""
         grid = np.zeros_like(self._grid)
-        rows, columns = self.bonds.lattice.cells
+        rows, columns = self.bonds.lattice.rows_columns
         # Parts set aside hold NaN and no bonds.
         grid[:, rows * self.bonds.lattice.shape[1] + columns] = np.nan_to_num(prescribed)
         out = self.apply_grid(grid)
-        if self.surface is not None:
-            given = np.nan_to_num(prescribed[:, self.surface.particles])
-            self.add_at_surface(out, self.surface.reaction(given))
-        if self.fixed is not None:
-            out[self.fixed] = 0.0
+        if self.ended_stiffness is not None:
+            given = np.nan_to_num(prescribed[:, self.ended_stiffness.particles])
+            self.add_at_surface(out, self.ended_stiffness.reaction(given))
+        if self.identity_rows is not None:
+            out[self.identity_rows] = 0.0
         return out
 
     def with_moduli(self, moduli: Moduli) -> BondOperator:
         """The operator of the same bonds and supports with other moduli."""
         fixed = np.ones((self.components, self.bonds.lattice.count), dtype=bool)
-        fixed[:, self.active] = False if self.fixed is None else self.fixed
+        fixed[:, self.active] = False if self.identity_rows is None else self.identity_rows
         return BondOperator(self.bonds, moduli, fixed)
 
     def companion(self) -> BondOperator:
@@ -233,16 +237,18 @@ class BondOperator(LinearOperator):
         `basis` gives one component of the active particles, shape (active, columns), and serves
         all components alike.
         """
-        assert self.surface is not None
-        size = (len(self.surface.particles), len(self.active))
+        assert self.ended_stiffness is not None
+        size = (len(self.ended_stiffness.particles), len(self.active))
         pick = sparse.csr_array(
             (np.ones(len(self.at_surface)), (self._on_surface, self.at_surface)), shape=size
         )
         parts = []
         for component in range(self.components):
             part = pick
-            if self.fixed is not None:
-                part = part @ sparse.diags_array((~self.fixed[component]).astype(np.float64))
+            if self.identity_rows is not None:
+                part = part @ sparse.diags_array(
+                    (~self.identity_rows[component]).astype(np.float64)
+                )
             parts.append(part if basis is None else part @ basis)
         return sparse.csr_array(sparse.block_diag(parts, format="csr"))
 
@@ -275,10 +281,10 @@ class BondOperator(LinearOperator):
     def own_blocks(self) -> Array:
         """Their diagonal blocks, shape (len(own), components, components)."""
         blocks = self.as_blocks(self.diagonal)
-        if self.surface is not None:
+        if self.ended_stiffness is not None:
             self._relieve(blocks)
-        if self.fixed is not None:
-            where, component = np.nonzero(self.fixed.T[self.own])
+        if self.identity_rows is not None:
+            where, component = np.nonzero(self.identity_rows.T[self.own])
             blocks[where, component, :] = blocks[where, :, component] = 0.0
             blocks[where, component, component] = self.identity_scale
         return blocks
@@ -288,12 +294,12 @@ class BondOperator(LinearOperator):
 
         Exact for those; for the others what is left out is small and makes the block stiffer.
         """
-        assert self.surface is not None
+        assert self.ended_stiffness is not None
         own = np.full(len(self.active), -1)
         own[self.own] = np.arange(len(self.own))
         at = own[self.at_surface]
         stiff = np.abs(np.einsum("pii->p", blocks[at])) > STIFF * np.abs(np.trace(self.bulk_block))
-        blocks[at[stiff]] += self.surface.relief(self._on_surface[stiff])
+        blocks[at[stiff]] += self.ended_stiffness.relief(self._on_surface[stiff])
 
     def as_blocks(self, entries: Array) -> Array:
         """Entries (entries, n) in the kernels' order as symmetric blocks (n, c, c)."""
@@ -316,5 +322,5 @@ class BondOperator(LinearOperator):
     def nbytes(self) -> int:
         """Memory of what a product reads besides the fields."""
         arrays = (self.segments, self.steps, self.half_blocks, self.bulk, self.diagonal)
-        surface = 0 if self.surface is None else self.surface.nbytes
+        surface = 0 if self.ended_stiffness is None else self.ended_stiffness.nbytes
         return sum(a.nbytes for a in arrays) + self.bonds.nbytes + surface

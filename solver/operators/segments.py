@@ -28,7 +28,7 @@ def runs(lattice: Lattice, particles: Indices, kind: Indices) -> tuple[Indices, 
         In the lattice's order.
     kind : ndarray of int, shape (n,)
     """
-    rows, columns = (axis[particles] for axis in lattice.cells)
+    rows, columns = (axis[particles] for axis in lattice.rows_columns)
     step = np.ones(len(rows), dtype=bool)
     step[1:] = (rows[1:] != rows[:-1]) | (columns[1:] != columns[:-1] + 1) | (kind[1:] != kind[:-1])
     first = np.nonzero(step)[0]

@@ -83,7 +83,7 @@ def shares(family: Family, moduli: Moduli, along: Array) -> tuple[Array, Array]:
         E_τ = 1/(S)_ττ, Pa, or 1/(K⁻¹)_ττ, W/(m K).
     """
     half = family.size // 2
-    weight = (family.weight * family.cell)[:half]
+    weight = (family.weight * family.cell_area)[:half]
     tensor = effective_tensor(family, moduli)
     if isinstance(moduli, ConductiveModuli):
         gradient = along @ np.linalg.inv(tensor)

@@ -106,11 +106,11 @@ class SurfaceStiffness:
         skin = self._skin(family, moduli, number)
         #: K_ss.
         self.matrix: sparse.csc_array = matrix + skin(False)
-        self._factors = self._factorise(number[ended.outline.edges])
-        if moduli.non_negative and self._factors.U.diagonal().min(initial=1.0) < 0.0:
+        self._lu = self._factorise(number[ended.outline.edges])
+        if moduli.non_negative and self._lu.U.diagonal().min(initial=1.0) < 0.0:
             # Where few bonds hold a node, what is too much of the lattice must not soften it.
             self.matrix = matrix + skin(True)
-            self._factors = self._factorise(number[ended.outline.edges])
+            self._lu = self._factorise(number[ended.outline.edges])
 
     def _skin(
         self, family: Family, moduli: Moduli, number: Indices
@@ -124,7 +124,7 @@ class SurfaceStiffness:
         edges = np.nonzero((outline.face == 0) & (ends >= 0).all(axis=1))[0]
         if not len(edges):
             return lambda _: sparse.csc_array((c * count, c * count))
-        stiffness = thickness(outline, family, moduli, edges) / family.cell
+        stiffness = thickness(outline, family, moduli, edges) / family.cell_area
         length = outline.length[edges]
         along = (outline.nodes[outline.edges[edges, 1]] - outline.nodes[outline.edges[edges, 0]]).T
         along = along / length if c > 1 else np.ones((1, len(edges)))
@@ -197,15 +197,15 @@ class SurfaceStiffness:
         force = -(self.coupling @ values.ravel())
         if load is not None:
             force += load[:, self.nodes].ravel()
-        return np.asarray(self._factors.solve(force).reshape(self.components, -1))
+        return np.asarray(self._lu.solve(force).reshape(self.components, -1))
 
     def reaction(self, values: Array) -> Array:
         """−K_ps K_ss⁻¹ K_sp u: what the nodes do to the particles, both (components, p)."""
         return (self.transposed @ self.nodal(values).ravel()).reshape(values.shape)
 
-    def pull(self, load: Array) -> Array:
+    def condensed_load(self, load: Array) -> Array:
         """−K_ps K_ss⁻¹ f: loads of the particles that replace those of the nodes, on the left."""
-        nodes = self._factors.solve(load[:, self.nodes].ravel())
+        nodes = self._lu.solve(load[:, self.nodes].ravel())
         return (self.transposed @ nodes).reshape(self.components, -1)
 
     def condensed(self, basis: sparse.csr_array) -> sparse.csr_array:
@@ -213,7 +213,7 @@ class SurfaceStiffness:
         lowered = sparse.csc_array(self.coupling @ basis)
         used = np.unique(lowered.nonzero()[1])
         dense = lowered[:, used].toarray()
-        block = -(dense.T @ self._factors.solve(dense))
+        block = -(dense.T @ self._lu.solve(dense))
         place = sparse.csr_array(
             (np.ones(len(used)), (used, np.arange(len(used)))), shape=(basis.shape[1], len(used))
         )
@@ -251,7 +251,7 @@ class SurfaceStiffness:
             part = which[begin : begin + _CHUNK]
             columns = (part[:, None] + count * np.arange(c)).ravel()
             right = self.coupling[:, columns].toarray()
-            solved = self._factors.solve(right)
+            solved = self._lu.solve(right)
             # One particle's columns at a time: only their products among themselves count.
             right, solved = (x.reshape(-1, len(part), c) for x in (right, solved))
             blocks[begin : begin + len(part)] = -np.einsum("spa,spb->pab", right, solved)
@@ -262,7 +262,7 @@ class SurfaceStiffness:
         """Memory of matrices and factors, bytes."""
         matrices = (self.coupling, self.transposed)
         size = sum(m.data.nbytes + m.indices.nbytes + m.indptr.nbytes for m in matrices)
-        return int(size + 12 * self._factors.nnz + self.own.nbytes + self.ended.nbytes)
+        return int(size + 12 * self._lu.nnz + self.own.nbytes + self.ended.nbytes)
 
 
 class _Strains:
@@ -276,7 +276,7 @@ class _Strains:
         # grows no more; its geometry stays, so that rigid motions still strain nothing.
         length = np.maximum(length, SHORTEST * family.spacing)
         self.length, self.spacing, self.components = length, family.spacing, components
-        weight = family.weight[offset] * family.cell * length
+        weight = family.weight[offset] * family.cell_area * length
         if isinstance(moduli, ConductiveModuli):
             moduli_of = moduli.conductivity[offset] / family.length[offset]
             #: Twice the energy for a strain of one, shape (strains, k).

@@ -33,7 +33,7 @@ class Discretisation:
         Prescribed values (rotations times the spacing), zero where free, NaN where set aside.
     load : ndarray, shape (components, N)
         Densities of force, couple over spacing, or source.
-    pull : ndarray, shape (components, nodes of the outline), optional
+    nodal_load : ndarray, shape (components, nodes of the outline), optional
         Loads of the surface's nodes, per volume of a particle.
     seconds : float
         Wall time that building all this took.
@@ -49,11 +49,11 @@ class Discretisation:
     prescribed: Mask
     values: Array
     load: Array
-    pull: Array | None
+    nodal_load: Array | None
     seconds: float
 
     @classmethod
-    def of(cls, scene: Description, growing: bool = False) -> Discretisation:
+    def of(cls, scene: Description, sharp_tips: bool = True) -> Discretisation:
         """Build it, cheap checks first."""
         begun = perf_counter()
         family = scene.family()
@@ -62,16 +62,16 @@ class Discretisation:
         lattice = Lattice(scene.region, scene.spacing, family.reach)
         components = 1
         if scene.elastic:
-            components = 2 if stability.sign == "central" else 3
+            components = 2 if stability.kind == "central" else 3
         prescribed, values = _supports(scene, lattice, components)
         load = _loads(scene, lattice, components)
-        growing = growing or scene.broken is not None
-        pulls = _edge_loads(scene, lattice, growing)
+        sharp_tips = sharp_tips and scene.broken is None
+        edge_loads = _edge_loads(scene, lattice, sharp_tips)
         broken = scene.broken(lattice, family) if scene.broken else None
         held = np.logical_and.reduce(prescribed, axis=0)
         aside = np.zeros(lattice.count, dtype=bool)
         while True:
-            bonds = Bonds(lattice, family, scene.cracks, scene.surface, held, broken, growing)
+            bonds = Bonds(lattice, family, scene.cracks, scene.surface, held, broken, sharp_tips)
             operator = BondOperator(bonds, moduli, prescribed)
             loose, why = mechanisms.find(
                 bonds,
@@ -79,7 +79,7 @@ class Discretisation:
                 prescribed,
                 scene.elastic,
                 broken is not None,
-                stability.sign != "indefinite",
+                stability.kind != "indefinite",
             )
             if not len(loose):
                 break
@@ -94,7 +94,7 @@ class Discretisation:
             prescribed[:, loose] = True
             values[:, loose] = np.nan
             broken = mechanisms.without(bonds, broken, loose)
-        pull = _share_out(pulls, lattice, operator, load)
+        nodal_load = _share_out(edge_loads, lattice, operator, load)
         if load[:, aside].any():
             raise MechanismError(
                 "a load on an edge acts on a part that nothing holds: hold it, or leave it out of "
@@ -112,7 +112,7 @@ class Discretisation:
             prescribed,
             values,
             load,
-            pull,
+            nodal_load,
             seconds,
         )
 
@@ -125,19 +125,19 @@ class Discretisation:
         """Load of the active unknowns less what the prescribed ones exert, flattened."""
         operator = self.operator
         rhs = self.load[:, operator.active] - operator.coupling(self.values)
-        if operator.surface is not None and self.pull is not None:
-            operator.add_at_surface(rhs, -operator.surface.pull(self.pull))
-        if operator.fixed is not None:
+        if operator.ended_stiffness is not None and self.nodal_load is not None:
+            operator.add_at_surface(rhs, -operator.ended_stiffness.condensed_load(self.nodal_load))
+        if operator.identity_rows is not None:
             given = self.values[:, operator.active]
-            rhs[operator.fixed] = operator.identity_scale * given[operator.fixed]
+            rhs[operator.identity_rows] = operator.identity_scale * given[operator.identity_rows]
         return rhs.ravel()
 
     def surface_values(self, unknowns: Array) -> Array | None:
         """Values of the surface's nodes for a field of shape (components, N), if it has nodes."""
-        surface = self.operator.surface
+        surface = self.operator.ended_stiffness
         if surface is None:
             return None
-        return surface.nodal(np.nan_to_num(unknowns[:, surface.particles]), self.pull)
+        return surface.nodal(np.nan_to_num(unknowns[:, surface.particles]), self.nodal_load)
 
     def field(self, x: Array) -> Array:
         """Values of all unknowns, shape (components, N), from a vector of the active ones."""
@@ -188,27 +188,27 @@ def _loads(scene: Description, lattice: Lattice, components: int) -> Array:
     return load
 
 
-def _edge_loads(scene: Description, lattice: Lattice, growing: bool) -> list[Quadrature]:
+def _edge_loads(scene: Description, lattice: Lattice, sharp_tips: bool) -> list[Quadrature]:
     """Loads on the body's edges, evaluated."""
     edges = [item.edge for item in scene.loads if item.edge is not None]
     if not edges:
         return []
-    outline = Outline.of(lattice.region, scene.cracks, lattice.spacing, not growing)
+    outline = Outline.of(lattice.region, scene.cracks, lattice.spacing, sharp_tips)
     return [edge(outline) for edge in edges]
 
 
 def _share_out(
-    pulls: list[Quadrature], lattice: Lattice, operator: BondOperator, load: Array
+    edge_loads: list[Quadrature], lattice: Lattice, operator: BondOperator, load: Array
 ) -> Array | None:
     """Give loads on edges to the surface's nodes, or to the nearest particles (into `load`).
 
     Returns the loads of the outline's nodes, (components, nodes), None if no bond ends at them.
     """
-    surface = operator.surface
+    surface = operator.ended_stiffness
     nodal = None
     if surface is not None:
         nodal = np.zeros((load.shape[0], len(surface.ended.outline.nodes)))
-    for rule in pulls:
+    for rule in edge_loads:
         force = rule.force.T / lattice.spacing**2
         ends = rule.outline.edges[rule.edge].T
         share = np.stack([1 - rule.position, rule.position])

@@ -116,7 +116,7 @@ def find(
         )
     none = np.zeros(0, dtype=np.int64)
     points = bonds.lattice.points
-    cut = len(bonds.special) and ((bonds.factors == 0) & bonds.exist(bonds.special)).any()
+    cut = len(bonds.special) and ((bonds.strengths == 0) & bonds.exist(bonds.special)).any()
     slack = slack_particles(operator) if damaged or cut else none
     if len(slack):
         x, y = points[slack[0]]
@@ -140,7 +140,7 @@ def without(bonds: Bonds, broken: Mask | None, particles: NDArray[np.int64]) -> 
     lattice, family = bonds.lattice, bonds.family
     half = family.size // 2
     gone = np.zeros(lattice.shape, dtype=bool)
-    rows, columns = lattice.cells
+    rows, columns = lattice.rows_columns
     gone[rows[particles], columns[particles]] = True
     result = np.zeros((half, lattice.count), dtype=bool) if broken is None else broken.copy()
     for o, (dx, dy) in enumerate(family.offsets[:half]):

@@ -22,7 +22,7 @@ _RANK = 1e-12
 def parts(bonds: Bonds) -> tuple[int, NDArray[np.int32]]:
     """Number of connected parts and the part of every particle, shape (N,)."""
     lattice = bonds.lattice
-    if not len(bonds.special) or bonds.factors.min() > 0:
+    if not len(bonds.special) or bonds.strengths.min() > 0:
         # Neighbours that the family joins directly; more bonds can only join more.
         nearest = np.zeros((3, 3))
         nearest[1, 1] = 1
@@ -33,7 +33,7 @@ def parts(bonds: Bonds) -> tuple[int, NDArray[np.int32]]:
         if count == 1:
             return 1, np.zeros(lattice.count, dtype=np.int32)
     numbers = lattice.number()
-    rows, columns = lattice.cells
+    rows, columns = lattice.rows_columns
     family = bonds.family
     # Nearest bonds first: they connect nearly everything, and most bodies need no more.
     order = np.argsort(family.length[: family.size // 2], kind="stable")
@@ -42,7 +42,7 @@ def parts(bonds: Bonds) -> tuple[int, NDArray[np.int32]]:
     count, labels = lattice.count, np.zeros(lattice.count, dtype=np.int32)
     for position, o in enumerate(order):
         dx, dy = family.offsets[o]
-        here = np.nonzero(bonds.factor(int(o)) != 0)[0]
+        here = np.nonzero(bonds.strength(int(o)) != 0)[0]
         starts.append(here)
         ends.append(numbers[rows[here] + dy, columns[here] + dx])
         if position in (3, len(order) - 1):

@@ -111,7 +111,7 @@ def dense_stiffness(
     components = 1 if conductive else 3 if moduli.has_shear else 2
     dx, count = family.spacing, lattice.count
     index = {(int(i), int(j)): o for o, (i, j) in enumerate(family.offsets)}
-    rows, columns = lattice.cells
+    rows, columns = lattice.rows_columns
     matrix = np.zeros((components * count, components * count))
     for p in range(count):
         for q in range(p + 1, count):

@@ -52,7 +52,7 @@ def test_only_the_unknowns_that_a_scene_needs():
         free = (parts.lattice.edge_distance > 0.3).sum()
         assert parts.operator.shape == (components * free,) * 2
         # A sound body in a layer as wide as its bonds are long stores nothing for single bonds.
-        assert parts.bonds.factors.size == 0
+        assert parts.bonds.strengths.size == 0
 
 
 def test_solutions_know_their_physics():

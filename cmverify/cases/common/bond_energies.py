@@ -35,14 +35,14 @@ def energy_of_wave(family: Family, moduli: ElasticModuli, k: Array) -> Array:
             -0.5 * (2.0 + step),  # mean of both ends' rotations
         ]
     )
-    weight = 0.5 * family.weight * family.cell * length
+    weight = 0.5 * family.weight * family.cell_area * length
     axial = (weight * moduli.normal * stretch) @ stretch.conj().T
     return axial + (weight * moduli.shear * shear) @ shear.conj().T
 
 
 def energy_of_strain(family: Family, moduli: ElasticModuli) -> Array:
     """Quadratic form of a homogeneous strain (ε11, ε22, 2 ε12) and rotation, (4, 4)."""
-    (c, s), weight = family.normal.T, 0.5 * family.weight * family.cell * family.length
+    (c, s), weight = family.normal.T, 0.5 * family.weight * family.cell_area * family.length
     zero, one = np.zeros_like(c), np.ones_like(c)
     stretch = np.array([c * c, s * s, c * s, zero])
     shear = np.array([-c * s, c * s, 0.5 * (c * c - s * s), -one])
@@ -85,7 +85,7 @@ def non_negative_moduli_exist(family: Family, tensor: Array) -> bool:
 
     angle = family.angle
     c, s = np.cos(angle), np.sin(angle)
-    weight = 0.5 * family.weight * family.cell
+    weight = 0.5 * family.weight * family.cell_area
     if tensor.shape == (2, 2):
         first, second = np.triu_indices(2)
         normals = np.array([c, s])

@@ -202,10 +202,10 @@ def _step(solution: Solution, unit: tuple[int, int], cells: int) -> Array:
     values = solution.displacement.T
     if not len(found):
         return np.full_like(values, np.nan)
-    rows, columns = parts.lattice.cells
+    rows, columns = parts.lattice.rows_columns
     there = parts.lattice.to_grid(np.nan_to_num(values, nan=0.0))
     difference = there[:, rows + cells * unit[1], columns + cells * unit[0]] - values
-    difference[:, parts.bonds.factor(int(found[0])) == 0.0] = np.nan
+    difference[:, parts.bonds.strength(int(found[0])) == 0.0] = np.nan
     return np.asarray(difference)
 
 

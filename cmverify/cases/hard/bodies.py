@@ -124,7 +124,7 @@ def measure(solid: Solid, n: int) -> Measurement:
     return Measurement(
         statistics[0].unknowns,
         found,
-        statistics={**adapters.solver_statistics(statistics[0]), "sign": statistics[0].sign},
+        statistics={**adapters.solver_statistics(statistics[0]), "kind": statistics[0].kind},
     )
 
 

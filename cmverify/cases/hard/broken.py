@@ -117,7 +117,7 @@ def energy_defect(solution: Solution) -> float:
     d = solution.discretisation
     lattice, family, moduli = d.lattice, d.family, d.moduli
     number = lattice.number()
-    rows, columns = lattice.cells
+    rows, columns = lattice.rows_columns
     fields = solution.unknowns
     aside: Mask = np.asarray(np.isnan(fields).any(axis=0))  # loose parts strain nothing
     assert d.scene.broken is not None
@@ -131,7 +131,7 @@ def energy_defect(solution: Solution) -> float:
         there = other[here]
         jump = (fields[:, there] - fields[:, here]) / family.length[o]
         # Conduction: an unordered pair stores ½ k g² α Δv², g the jump over the length.
-        density = 0.5 * family.weight[o] * family.cell**2
+        density = 0.5 * family.weight[o] * family.cell_area**2
         if len(fields) == 1:
             total += density * moduli.conductivity[o] * (jump[0] ** 2).sum()  # type: ignore[union-attr]
             continue
@@ -141,5 +141,5 @@ def energy_defect(solution: Solution) -> float:
             shear = shear - 0.5 * (fields[2, here] + fields[2, there]) / family.spacing
         bond = moduli.normal[o] * stretch**2 + moduli.shear[o] * shear**2  # type: ignore[union-attr]
         total += density * family.length[o] * bond.sum()
-    work = float((d.load * np.nan_to_num(fields)).sum()) * family.cell
+    work = float((d.load * np.nan_to_num(fields)).sum()) * family.cell_area
     return abs(2 * total - work) / abs(work)

@@ -34,7 +34,7 @@ def _middle(lattice: Lattice) -> int:
 
 def _between(lattice: Lattice, family: Family, members: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Bonds between members and others, (family size / 2, N)."""
-    number, (rows, columns) = lattice.number(), lattice.cells
+    number, (rows, columns) = lattice.number(), lattice.rows_columns
     result = np.zeros((family.size // 2, lattice.count), dtype=bool)
     for o, (dx, dy) in enumerate(family.offsets[: family.size // 2]):
         other = number[rows + dy, columns + dx]

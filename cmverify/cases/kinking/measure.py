@@ -111,7 +111,7 @@ def drive(grown: Grown) -> float:
     history = grown.run.history
     horizon = grown.kink.m / grown.kink.n
     first = int(np.argmax(np.asarray(history.advance) >= horizon))
-    factor = float(np.asarray(history.factor)[first])
+    factor = float(np.asarray(history.load_factor)[first])
     return factor**2 * largest_release(grown.kink.material, grown.kink.mixity)
 
 
@@ -126,7 +126,7 @@ def mirror_distance(grown: Grown) -> float:
 def _fields(grown: Grown) -> FieldSet:
     """Fig. 24: the horizontal displacement with the kinked crack, beside the field prescribed."""
     solution = grown.run.solution
-    factor = grown.run.factor
+    factor = grown.run.load_factor
     kink, points = grown.kink, solution.points
     given = factor * kink.displacement(*points.T)
     sizes = np.abs(given[:, 0]).max()

@@ -133,13 +133,13 @@ def _print(console, verdicts: list[Verdict]) -> None:  # type: ignore[no-untyped
     view.add_column("verdict")
     for v in verdicts:
         mark = {True: "[green]✓[/]", False: "[red]✗[/]", None: "–"}[v.confirmed]
-        colour = "green" if v.stable else "red" if v.sign == "inadmissible" else "yellow"
+        colour = "green" if v.stable else "red" if v.kind == "inadmissible" else "yellow"
         numbers = [
             "–" if value != value else f"{value:.3g}" for value in (v.margin, v.lowest, v.highest)
         ]
         view.add_row(
             mark, v.solid, v.calibration, v.law or "default", f"{v.m:g}", *numbers,
-            f"[{colour}]{v.sign}[/]" + (", bonds ≥ 0" if v.non_negative else ""),
+            f"[{colour}]{v.kind}[/]" + (", bonds ≥ 0" if v.non_negative else ""),
         )  # fmt: skip
     console.print(view)
 

@@ -30,7 +30,7 @@ class Verdict:
     ----------
     solid, calibration, law, m
         What was judged.
-    sign : str
+    kind : str
         See `solver.material.stability.Stability`; "unrepresentable" where there are no such moduli.
     margin : float
         Smallest relative eigenvalue of the condensed symbol; NaN without moduli.
@@ -51,7 +51,7 @@ class Verdict:
     calibration: str
     law: str | None
     m: float
-    sign: str
+    kind: str
     margin: float = np.nan
     wave_vector: tuple[float, float] = (np.nan, np.nan)
     lowest: float = np.nan
@@ -63,7 +63,7 @@ class Verdict:
     @property
     def stable(self) -> bool:
         """Whether bodies of it can be solved at all."""
-        return self.sign in ("positive", "central", "indefinite")
+        return self.kind in ("positive", "central", "indefinite")
 
 
 def material(tensor: Array) -> Material:
@@ -140,7 +140,7 @@ def judge(
     confirmed: bool | None = None
     if isinstance(moduli, ElasticModuli):
         unstable = bond_energies.is_unstable(family, moduli, np.array(found.wave_vector))
-        confirmed = unstable == (found.sign == "inadmissible")
+        confirmed = unstable == (found.kind == "inadmissible")
         if not confirmed and np.isneginf(found.margin):
             confirmed = bond_energies.rotation_changes_sign(family, moduli)
     lowest, highest = extreme_eigenvalues(family, moduli)
@@ -150,7 +150,7 @@ def judge(
         calibration,
         law,
         m,
-        found.sign,
+        found.kind,
         found.margin,
         found.wave_vector,
         lowest / scale,

@@ -88,7 +88,7 @@ def test_a_verdict_that_bond_energies_contradict_is_not_confirmed(monkeypatch):
 def test_conductors_are_judged_too():
     found = verdicts.compare("1000 : 1", materials.conductivity(1000.0, np.pi / 8), 3)
     assert [v.calibration for v in found] == ["continuum", "lattice", "positive"]
-    assert found[-1].sign == "unrepresentable"
+    assert found[-1].kind == "unrepresentable"
     assert found[-1].confirmed
 
 

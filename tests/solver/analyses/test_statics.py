@@ -55,7 +55,7 @@ def patch_error(field, scene, tolerance=1e-13):
     x, y = found.points[free].T
     u = field.displacement(x, y)
     errors = [np.linalg.norm(found.displacement[free] - u) / np.linalg.norm(u)]
-    if found.statistics.sign != "central":
+    if found.statistics.kind != "central":
         # Rotations matter as they move the horizon.
         wrong = np.linalg.norm(found.rotation[free] - field.rotation(x, y))
         errors.append(wrong * scene.m * scene.spacing / np.linalg.norm(u))
@@ -78,7 +78,7 @@ def test_quadratic_equilibrium_fields_are_exact(name, m):
     voigt, sign = SOLIDS[name]
     field = field_of(voigt)
     scene = patch_scene(field, m=m)
-    assert scene.discretise().stability.sign == sign
+    assert scene.discretise().stability.kind == sign
     assert patch_error(field, scene) < 1e-11
 
 
@@ -410,7 +410,7 @@ def test_negative_curvature_of_a_conductor_has_a_name(width):
         surface="none",
     )
     parts = scene.discretise()
-    assert parts.stability.sign == "positive"
+    assert parts.stability.kind == "positive"
     assert np.linalg.eigvalsh(to_csr(parts.operator).toarray())[0] < 0
     assert (parts.operator.block_diagonal.min() > 0) == (width == 2)
     with pytest.raises(NegativeCurvatureError, match=r"negative|non-positive"):
@@ -430,7 +430,7 @@ def test_negative_curvature_of_a_solid_has_a_name():
         surface="none",
     )
     parts = scene.discretise()
-    assert parts.stability.sign == "positive"
+    assert parts.stability.kind == "positive"
     assert np.linalg.eigvalsh(to_csr(parts.operator).toarray())[0] < 0
     with pytest.raises(NegativeCurvatureError, match=r"negative|non-positive"):
         scene.solve()
@@ -448,7 +448,7 @@ def test_statistics():
     assert (s.particles, s.unknowns) == (len(found.points), 3 * free)
     assert s.bonds == free * Family(3).size
     assert 0 < s.residual <= 1e-9
-    assert s.sign == "positive"
+    assert s.kind == "positive"
     assert s.margin == pytest.approx(1.0, abs=0.2)
     assert s.setup_seconds > 0
     assert s.solve_seconds > 0

@@ -21,11 +21,11 @@ def bonds_of(region, spacing=1.0, m=2.0, cracks=(), rule="partial", **options):
 def pair_factors(bonds):
     """Factor of every directed bond {(p, q): factor}, from `factor`, which kernels follow."""
     lattice = bonds.lattice
-    number, (rows, columns) = lattice.number(), lattice.cells
+    number, (rows, columns) = lattice.number(), lattice.rows_columns
     found = {}
     for o, (dx, dy) in enumerate(bonds.family.offsets):
         there = number[rows + dy, columns + dx]
-        values = bonds.factor(o)
+        values = bonds.strength(o)
         assert not values[there < 0].any()
         for p in np.flatnonzero(there >= 0):
             found[int(p), int(there[p])] = float(values[p])
@@ -47,7 +47,7 @@ def cut_pairs(bonds):
 def test_short_particles_are_those_that_lack_a_neighbour(mask, m):
     bonds = bonds_of(Cells(mask), m=m)
     lattice = bonds.lattice
-    rows, columns = lattice.cells
+    rows, columns = lattice.rows_columns
     lacks = [
         not all(lattice.mask[r + dy, c + dx] for dx, dy in bonds.family.offsets)
         for r, c in zip(rows, columns, strict=True)
@@ -83,7 +83,7 @@ def test_factors_are_the_same_from_both_ends(seed):
     mask[4, 2:6] = True
     cracks = [Crack((2.0, 5.0), tuple(rng.uniform(3, 8, 2))), Crack((1, 1), (4, 4.5), (7, 3))]
     prescribed = rng.random(mask.sum()) < 0.2
-    bonds = bonds_of(Cells(mask), m=2.5, cracks=cracks, surface="volume", prescribed=prescribed)
+    bonds = bonds_of(Cells(mask), m=2.5, cracks=cracks, treatment="volume", prescribed=prescribed)
     factors = pair_factors(bonds)
     for (p, q), factor in factors.items():
         assert factors[q, p] == factor
@@ -171,7 +171,7 @@ def test_a_crack_too_short_to_cut_a_bond_is_refused():
 def test_nothing_is_stored_for_bulk_bonds():
     family = Family(3, 0.02)
     bonds = Bonds(Lattice(rectangle(1.0, 1.0), 0.02, family.reach), family)
-    assert bonds.factors.shape == (family.size, 0)
+    assert bonds.strengths.shape == (family.size, 0)
     cracked = Bonds(bonds.lattice, family, [Crack((-1.0, 0.0), (0.0, 0.0))])
     # A crack of 25 cells concerns the particles within the horizon beside it, no others.
     near = np.abs(bonds.lattice.points[cracked.special, 1]) < family.length.max()

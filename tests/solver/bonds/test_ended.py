@@ -67,7 +67,7 @@ def test_one_particle_and_its_four_bonds_in_one_dimension():
     moduli = calibrate(family, ConductivityTensor.isotropic(1.0))
     operator = BondOperator(bonds, moduli, np.zeros((1, 1), dtype=bool))
     k = moduli.conductivity
-    np.testing.assert_allclose(operator.surface.own[0], 2 * k.sum())
+    np.testing.assert_allclose(operator.ended_stiffness.own[0], 2 * k.sum())
     # The surface follows the particle wherever it goes.
     np.testing.assert_allclose(operator.matvec(np.ones(1)), 0.0, atol=1e-14)
 
@@ -110,20 +110,20 @@ def dense_reference(operator):
             matrix[:] += weight * modulus * np.outer(strain, strain)
 
     number = lattice.number()
-    rows, columns = lattice.cells
+    rows, columns = lattice.rows_columns
     for o in range(family.size):
-        w, whole = family.weight[o] * family.cell, family.length[o]
+        w, whole = family.weight[o] * family.cell_area, family.length[o]
         scale = 1 / whole**2 * whole if c == 1 else whole
         for p in range(count):
             q = number[rows[p] + family.offsets[o, 1], columns[p] + family.offsets[o, 0]]
-            if q >= 0 and bonds.factor(o)[p] > 0:
+            if q >= 0 and bonds.strength(o)[p] > 0:
                 # Half of it to either end.
                 weight = 0.5 * w * (1 if c == 1 else scale)
                 add(o, whole, [((0, p), 1)], [((0, q), 1)], (0.5 * whole,) * 2, weight)
     for p, o, edge, position, length in zip(
         ended.particle, ended.offset, ended.edge, ended.position, ended.length, strict=True
     ):
-        w, whole = family.weight[o] * family.cell, family.length[o]
+        w, whole = family.weight[o] * family.cell_area, family.length[o]
         arms = 0.5 * whole, length - 0.5 * whole
         weight = w * length / (whole if c == 1 else 1)
         add(o, length, [((0, p), 1)], point(edge, position), arms, weight)
@@ -132,11 +132,13 @@ def dense_reference(operator):
         for o, edge, position, length, arm in zip(
             chords.offset, chords.edge, chords.position, chords.length, chords.arm, strict=True
         ):
-            weight = family.weight[o] * family.cell * length
+            weight = family.weight[o] * family.cell_area * length
             weight /= family.length[o] if c == 1 else 1
             start, end = (point(edge[k], position[k]) for k in (0, 1))
             add(o, length, start, end, arm, weight)
-    nodes = np.concatenate([c * count + a * size + operator.surface.nodes for a in range(c)])
+    nodes = np.concatenate(
+        [c * count + a * size + operator.ended_stiffness.nodes for a in range(c)]
+    )
     inner = np.arange(c * count)
     coupling = matrix[np.ix_(inner, nodes)]
     return matrix[np.ix_(inner, inner)] - coupling @ np.linalg.solve(
@@ -176,7 +178,7 @@ def test_every_particle_balances_in_a_homogeneous_state(voigt, spacing, m):
         ElasticTensor(voigt),
         [Crack((0.5, 0.1), (0.7, 0.4))],
     )
-    surface = operator.surface
+    surface = operator.ended_stiffness
     points = operator.bonds.lattice.points
     nodes = surface.ended.outline.nodes[surface.nodes]
     long = operator.bonds.ended.length > 0.1 * spacing
@@ -184,7 +186,7 @@ def test_every_particle_balances_in_a_homogeneous_state(voigt, spacing, m):
     clear[operator.bonds.ended.particle[~long]] = False
     # Nor those with a bond that grazes the hole.
     bonds = operator.bonds
-    whole = bonds.factors_of(np.arange(len(points))).sum(axis=0)
+    whole = bonds.strengths_of(np.arange(len(points))).sum(axis=0)
     whole += np.bincount(bonds.ended.particle, minlength=len(points))
     clear &= whole == bonds.family.size
     assert clear.mean() > 0.8
@@ -224,14 +226,14 @@ def test_a_body_prescribed_at_its_edge_has_no_surface():
     held = [Support.layer(3.5, displacement=0.0, rotation=0.0)]
     parts = Scene(disc(1.0), 0.05, SOLID, held, m=3, surface="extrapolated").discretise()
     assert parts.bonds.ended is None
-    assert parts.operator.surface is None
+    assert parts.operator.ended_stiffness is None
 
 
 def test_only_surfaces_that_free_particles_feel_have_nodes():
     held = [Support.layer(3.5, displacement=0.0, rotation=0.0)]
     crack = [Crack((-1.5, 0.0), (0.0, 0.0))]
     parts = Scene(disc(1.0), 0.05, SOLID, held, m=3, surface="extrapolated", cracks=crack)
-    surface = parts.discretise().operator.surface
+    surface = parts.discretise().operator.ended_stiffness
     nodes = surface.ended.outline.nodes[surface.nodes]
     assert np.abs(nodes[:, 1]).max() < 1e-12
 
@@ -428,5 +430,5 @@ def test_cracks_that_meet_are_refused():
 
 @pytest.mark.parametrize("shape", [disc(0.06), rectangle(0.1, 0.1), rectangle(0.3, 0.08)])
 def test_nodes_of_tiny_holes_stay_stiff(shape):
-    surface = body(rectangle(2.0, 2.0) - shape, 0.1, 3).surface
+    surface = body(rectangle(2.0, 2.0) - shape, 0.1, 3).ended_stiffness
     assert np.linalg.eigvalsh(surface.matrix.toarray()).min() > 0

@@ -17,7 +17,7 @@ def test_three_particles_in_a_row_by_hand():
     # Four neighbours and the cell itself: V₀ = 5, at the ends V = 2, in the middle V = 3.
     family = Family(1, 1.0, "full")
     assert full_volume(family) == 5.0
-    bonds = Bonds(Lattice(block(3, 1), 1.0, 1), family, surface="volume")
+    bonds = Bonds(Lattice(block(3, 1), 1.0, 1), family, treatment="volume")
     factors = pair_factors(bonds)
     assert factors == {
         (0, 1): pytest.approx(2.0),
@@ -30,7 +30,7 @@ def test_three_particles_in_a_row_by_hand():
 def volumes(bonds, held, judge):
     """Volume of each family: its cell and the shares of the neighbours it has."""
     lattice, family = bonds.lattice, bonds.family
-    number, (rows, columns) = lattice.number(), lattice.cells
+    number, (rows, columns) = lattice.number(), lattice.rows_columns
     found = np.ones(lattice.count)
 
     def beyond_support(row, column):
@@ -82,12 +82,12 @@ def test_factors_of_random_bodies(mask, seed, rule):
 def test_no_factors_in_bulk_or_behind_a_wide_layer():
     family = Family(2, 0.1)
     lattice = Lattice(rectangle(2.0, 2.0), 0.1, family.reach)
-    free = Bonds(lattice, family, surface="volume")
+    free = Bonds(lattice, family, treatment="volume")
     depth = lattice.edge_distance
     # Families cut short reach one horizon deep, and their bonds a second.
     assert depth[free.special].max() < 2 * family.length.max()
     assert len(free.special) > 0
-    held = Bonds(lattice, family, surface="volume", prescribed=depth < family.length.max())
+    held = Bonds(lattice, family, treatment="volume", prescribed=depth < family.length.max())
     assert len(held.special) == 0
 
 

@@ -67,7 +67,7 @@ def grow_singly(
     SceneError
         If the body has more than 6,000 unknowns.
     """
-    parts = replace(scene, loose="drop").discretise(growing=True)
+    parts = replace(scene, loose="drop").discretise(sharp_tips=False)
     if parts.operator.shape[0] > _LARGEST:
         raise SceneError(f"an exact run is for at most {_LARGEST} unknowns")
     critical = critical_energies(toughness, parts.family)
@@ -100,12 +100,12 @@ def utilisation(parts: Discretisation, field: Array, critical: Array, tension_on
     """f w / w_c of every bond, shape (half, N), from Eqs. 1, 2 and 4."""
     moduli, family, lattice = parts.moduli, parts.family, parts.lattice
     assert isinstance(moduli, ElasticModuli)
-    number, (rows, columns) = lattice.number(), lattice.cells
+    number, (rows, columns) = lattice.number(), lattice.rows_columns
     held = np.logical_and.reduce(parts.prescribed, axis=0)
     result = np.zeros((len(critical), lattice.count))
     for o, (dx, dy) in enumerate(family.offsets[: len(critical)]):
         q = number[rows + dy, columns + dx]
-        factor = parts.bonds.factor(o)
+        factor = parts.bonds.strength(o)
         for p in np.nonzero((q >= 0) & (factor > 0))[0]:
             if held[p] and held[q[p]]:
                 continue

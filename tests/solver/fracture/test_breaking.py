@@ -57,9 +57,9 @@ def test_stored_energy_is_that_of_the_operator_and_of_recovery(seed):
     field[parts.prescribed] = 0.0
     bonds = Breakable(parts, np.ones(parts.family.size))
     x = field[:, parts.operator.active]
-    expected = 0.5 * float((x * parts.operator.product(x)).sum()) * parts.family.cell
+    expected = 0.5 * float((x * parts.operator.product(x)).sum()) * parts.family.cell_area
     assert bonds.stored(field) == pytest.approx(expected, rel=1e-12)
-    everything = np.arange(bonds.factors.size)[bonds.factors.ravel() > 0]
+    everything = np.arange(bonds.strengths.size)[bonds.strengths.ravel() > 0]
     assert bonds.energy_of(field, everything).sum() == pytest.approx(expected, rel=1e-12)
 
 
@@ -79,7 +79,7 @@ def test_stored_energy_in_a_homogeneous_strain_is_the_continuums():
     field[0] = strain[0] * x + strain[2] / 2 * y
     field[1] = strain[2] / 2 * x + strain[1] * y
     inner = (abs(x - 15) < 10) & (abs(y - 15) < 10)
-    each = bonds.energy_of(field, np.arange(bonds.factors.size)).reshape(bonds.factors.shape)
+    each = bonds.energy_of(field, np.arange(bonds.strengths.size)).reshape(bonds.strengths.shape)
     energy = each[:, inner].sum() / inner.sum()
     assert energy == pytest.approx(0.5 * strain @ STIFF.voigt @ strain, rel=1e-10)
 
@@ -89,7 +89,7 @@ def test_bonds_of_zones_and_between_held_particles_are_kept():
     bonds = Breakable(parts, np.ones(parts.family.size), no_fail=(lambda x, y: x > 5,))
     load = bonds.utilisation(random_field(parts, 1))
     x, y = parts.lattice.points.T
-    every = np.arange(load.size)[bonds.factors.ravel() > 0]
+    every = np.arange(load.size)[bonds.strengths.ravel() > 0]
     _, p, q = bonds.ends(every)
     kept = (x[p] > 5) | (x[q] > 5) | ((y[p] < 1) & (y[q] < 1))
     assert (load.ravel()[every[kept]] == 0).all()

@@ -91,11 +91,11 @@ def test_damage_counts_area_fractions_and_broken_bonds():
     gone, whole = np.zeros(count), np.zeros(count)
     for o in range(family.size):
         exists = np.zeros(count, dtype=bool)
-        rows, columns = parts.lattice.cells
+        rows, columns = parts.lattice.rows_columns
         dx, dy = family.offsets[o]
         exists = parts.lattice.mask[rows + dy, columns + dx]
         whole += family.fraction[o] * exists
-        gone += family.fraction[o] * (exists & (parts.bonds.factor(o) == 0))
+        gone += family.fraction[o] * (exists & (parts.bonds.strength(o) == 0))
     np.testing.assert_allclose(run.damage, gone / whole, rtol=1e-12)
     np.testing.assert_allclose(recovery.damage(run.solution), run.damage)
     assert run.damage.max() > 0

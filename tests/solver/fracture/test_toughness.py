@@ -24,7 +24,7 @@ def counted(family, critical, p, q):
     for o, w, weight in zip(family.offsets, critical, family.weight, strict=True):
         step = (o @ nu) * period
         energy += w * weight * np.count_nonzero((rows < 0) & (rows + step > 0))
-    return energy * family.cell**2 / (period * family.spacing)
+    return energy * family.cell_area**2 / (period * family.spacing)
 
 
 @exact

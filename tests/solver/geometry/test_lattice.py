@@ -37,7 +37,7 @@ def test_grid_and_particles(mask, pad, spacing):
     assert lattice.mask.sum() == mask.sum()
     values = np.arange(1.0, 2 * lattice.count + 1).reshape(2, -1)
     grid = lattice.to_grid(values)
-    rows, columns = lattice.cells
+    rows, columns = lattice.rows_columns
     np.testing.assert_array_equal(grid[:, rows, columns], values)
     assert grid.sum() == values.sum()
     number = lattice.number()

@@ -57,9 +57,9 @@ def test_probed_matrix_is_the_galerkin_product(cells: int, changes: dict[str, ob
     hats = Hats(operator, cells)
     p = _prolongation(hats, operator.components)
     fine = to_csr(operator)
-    if operator.fixed is not None:
+    if operator.identity_rows is not None:
         # The coarse space lives on the free unknowns.
-        p = sparse.diags_array((~operator.fixed).ravel().astype(float)) @ p
+        p = sparse.diags_array((~operator.identity_rows).ravel().astype(float)) @ p
     expected = (p.T @ fine @ p).toarray()
     found = hats.galerkin().toarray()
     assert np.abs(found - expected).max() <= 1e-12 * np.abs(expected).max()
@@ -95,9 +95,9 @@ def test_local_update_equals_a_new_matrix() -> None:
     )
     from solver.linear import TwoLevel
 
-    before = TwoLevel(scene.discretise().operator, cells=5)
+    before = TwoLevel(scene.discretise().operator, coarsening=5)
     operator = grown.discretise().operator
-    updated, new = before.updated(operator), TwoLevel(operator, cells=5)
+    updated, new = before.updated(operator), TwoLevel(operator, coarsening=5)
     scale = abs(new.coarse).max()
     assert abs(updated.coarse - new.coarse).max() <= 1e-13 * scale
     # And the change was not empty.

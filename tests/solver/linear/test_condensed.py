@@ -26,9 +26,9 @@ def test_operator_is_the_schur_complement() -> None:
     dense = to_csr(operator).toarray()
     n = 2 * len(operator.active)
     schur = dense[:n, :n] - dense[:n, n:] @ np.linalg.solve(dense[n:, n:], dense[n:, :n])
-    if operator.fixed is not None:
+    if operator.identity_rows is not None:
         # Identity rows stay identity rows.
-        fixed = operator.fixed[:2].ravel()
+        fixed = operator.identity_rows[:2].ravel()
         schur[fixed] = schur[:, fixed] = 0.0
         schur[fixed, fixed] = operator.identity_scale
     condensed = Condensed(operator)
@@ -42,7 +42,11 @@ def test_damaged_saddle_agrees_with_a_direct_solve() -> None:
     assert solution.statistics.method.startswith("CG on condensed")
     exact = np.linalg.solve(to_csr(problem.operator).toarray(), problem.right_hand_side())
     found = solution.unknowns[:, problem.operator.active].ravel()
-    free = ~problem.operator.fixed.ravel() if problem.operator.fixed is not None else slice(None)
+    free = (
+        ~problem.operator.identity_rows.ravel()
+        if problem.operator.identity_rows is not None
+        else slice(None)
+    )
     assert np.linalg.norm((found - exact)[free]) <= 1e-8 * np.linalg.norm(exact)
 
 
@@ -53,7 +57,9 @@ def test_damage_that_makes_the_condensed_energy_negative_is_named() -> None:
     operator = scene.discretise().operator
     spectrum = np.linalg.eigvalsh(to_csr(operator).toarray())
     rotations = (
-        int((~operator.fixed[2]).sum()) if operator.fixed is not None else len(operator.active)
+        int((~operator.identity_rows[2]).sum())
+        if operator.identity_rows is not None
+        else len(operator.active)
     )
     assert (spectrum < 0).sum() > rotations
     with pytest.raises(NegativeCurvatureError, match="non-positive energy"):

@@ -48,7 +48,7 @@ def test_symmetric_positive_and_within_the_smoother_s_bound(partly: bool) -> Non
     )  # fmt: skip
     operator = scene.discretise().operator
     size = operator.shape[0]
-    m = _dense(TwoLevel(operator, cells=4), size)
+    m = _dense(TwoLevel(operator, coarsening=4), size)
     assert np.abs(m - m.T).max() <= 1e-10 * np.abs(m).max()
     stiffness = to_csr(operator).toarray()
     spectrum = np.linalg.eigvals(m @ stiffness)
@@ -82,7 +82,7 @@ def test_iterations_stay_flat_where_the_operator_is_indefinite(nu: float, most: 
                 [x * x - y, x * y], axis=-1), rotation=lambda x, y: 0.5 * (y + 1))],
         )  # fmt: skip
         statistics = scene.solve(1e-8).statistics
-        assert statistics.sign == "indefinite"
+        assert statistics.kind == "indefinite"
         assert statistics.method == "CG on condensed displacements, two-level"
         counts.append(statistics.iterations)
     assert max(counts) <= most

@@ -46,7 +46,7 @@ def followed(message: str, m: float, material) -> solver.material.stability.Stab
     ],
 )
 def test_what_is_recommended_is_stable(material, m):
-    assert followed(remedy(Family(m), material), m, material).sign != "inadmissible"
+    assert followed(remedy(Family(m), material), m, material).kind != "inadmissible"
 
 
 def test_nothing_is_recommended_beyond_the_limit():
@@ -63,7 +63,7 @@ def test_an_hourglass_of_rotations_is_named():
     moduli = calibrate(family, material, "positive")
     with pytest.raises(solver.InadmissibleMaterialError, match="a pattern of rotations") as caught:
         require_admissible(family, moduli)
-    assert followed(str(caught.value), 3, material).sign == "positive"
+    assert followed(str(caught.value), 3, material).kind == "positive"
 
 
 def test_directions_decide_what_no_lattice_can_do():
@@ -89,4 +89,4 @@ def test_laws_that_cannot_be_calibrated_say_what_can():
     material = ConductivityTensor.orthotropic(1000.0, 1.0, np.radians(15))
     with pytest.raises(CalibrationError, match="has the moments of this tensor") as caught:
         calibrated(Family(3), material)
-    assert followed(str(caught.value), 3, material).sign == "positive"
+    assert followed(str(caught.value), 3, material).kind == "positive"

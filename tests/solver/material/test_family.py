@@ -88,7 +88,7 @@ def test_geometry():
     np.testing.assert_allclose(cross, 1.0, rtol=1e-14)
     np.testing.assert_allclose(np.cos(family.angle), family.normal[:, 0], atol=1e-15)
     assert family.horizon == 0.875
-    assert family.cell == 0.0625
+    assert family.cell_area == 0.0625
     assert family.reach == np.abs(family.offsets).max()
     np.testing.assert_allclose(
         family.weight, family.fraction * (1 - family.length / family.horizon), rtol=1e-14

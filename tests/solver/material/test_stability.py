@@ -166,7 +166,7 @@ def test_the_zone_holds_one_of_each_pair_and_not_the_origin():
 def test_isotropic_solids(nu, plane, sign, m):
     family = Family(m)
     found = assess(family, calibrate(family, ElasticTensor.isotropic(1.0, nu, plane)))
-    assert found.sign == sign
+    assert found.kind == sign
     assert (found.margin > 0) == (sign != "inadmissible")
     low, high = found.rotation_range
     assert {"positive": low > 0, "central": low == high == 0}.get(sign, high < 0)
@@ -176,10 +176,10 @@ def test_isotropic_solids(nu, plane, sign, m):
 def test_carbon_epoxy(m):
     family = Family(m)
     harmonic = assess(family, calibrate(family, PLY, "lattice", TwoHarmonic()))
-    assert harmonic.sign == "inadmissible"
+    assert harmonic.kind == "inadmissible"
     low, high = harmonic.rotation_range
     assert low < 0 < high
-    assert assess(family, calibrate(family, PLY, "positive")).sign == "positive"
+    assert assess(family, calibrate(family, PLY, "positive")).kind == "positive"
 
 
 def test_refusals_name_the_wave_vector():
@@ -209,12 +209,12 @@ def test_scenes_refuse_what_is_unstable_before_they_look_at_the_rest():
 def test_a_negative_bond_can_sink_a_conductor():
     family = Family(3)
     moduli = calibrate(family, ConductivityTensor(DISC))
-    assert assess(family, moduli).sign == "positive"
+    assert assess(family, moduli).kind == "positive"
     # The paper's two-harmonic law goes negative across the fibres; here far too much so.
     axis = ConductivityTensor.orthotropic(200.0, 1.0, 0.2)
     assert not calibrate(family, axis, "continuum", TwoHarmonic()).non_negative
     assert (
-        assess(family, calibrate(family, axis, "continuum", TwoHarmonic())).sign == "inadmissible"
+        assess(family, calibrate(family, axis, "continuum", TwoHarmonic())).kind == "inadmissible"
     )
 
 
@@ -252,7 +252,7 @@ def test_verdict_agrees_with_the_inertia_of_a_clamped_body(nu, plane, admissible
     rotations = len(operator.active) if moduli.shear.max() < 0 else 0
     assert (negative == rotations) == admissible
     assert negative >= rotations
-    assert (assess(family, moduli).sign != "inadmissible") == admissible
+    assert (assess(family, moduli).kind != "inadmissible") == admissible
 
 
 @pytest.mark.parametrize(
@@ -282,7 +282,7 @@ def test_sums_that_are_not_positive_definite_are_inadmissible():
         ElasticModuli(-np.ones(family.size), np.zeros(family.size)),
     ):
         found = assess(family, moduli)
-        assert found.sign == "inadmissible"
+        assert found.kind == "inadmissible"
         assert found.margin < 0
         with pytest.raises(InadmissibleMaterialError, match="releases energy"):
             require_admissible(family, moduli)

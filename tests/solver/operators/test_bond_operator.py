@@ -130,7 +130,11 @@ def test_operator_with_cracks_surface_factors_and_prescribed_particles(seed, kin
     index = (np.arange(c)[:, None] * count + active).ravel()
     wanted = whole[np.ix_(index, index)]
     scale = np.abs(wanted).max() + operator.identity_scale
-    partly = np.zeros(len(index), bool) if operator.fixed is None else operator.fixed.ravel()
+    partly = (
+        np.zeros(len(index), bool)
+        if operator.identity_rows is None
+        else operator.identity_rows.ravel()
+    )
     wanted[partly, :] = wanted[:, partly] = 0.0
     wanted[partly, partly] = operator.identity_scale
     found = to_csr(operator).toarray()
@@ -251,14 +255,14 @@ def test_prescribed_particles_are_no_unknowns():
     operator = body(mask, "elastic", fixed=fixed)
     assert operator.shape == (72, 72)
     np.testing.assert_array_equal(operator.active, np.arange(12, 36))
-    assert operator.fixed.sum() == 1
+    assert operator.identity_rows.sum() == 1
     assert operator.directed_bonds == 24 * operator.bonds.family.size
 
 
 def test_wrong_mask():
     bonds = body(np.ones((3, 3), bool), "elastic").bonds
     moduli = random_moduli(bonds.family, "conductive", 0)
-    with pytest.raises(ValueError, match="fixed must have shape"):
+    with pytest.raises(ValueError, match="prescribed must have shape"):
         BondOperator(bonds, moduli, np.zeros((3, 9), bool))
 
 

@@ -82,8 +82,8 @@ def test_oblique_edges_need_little_and_faces_of_cracks_get_none():
 def test_the_membranes_energy_by_hand(monkeypatch):
     # ½ Σ e E ε² L for the strain ε along each edge of u = (ε11 x, ε22 y).
     operator = body(rectangle(20.0, 20.0, (0, 0.3)), 1.0, 2)
-    with_it = operator.surface.matrix
-    outline, nodes = operator.surface.ended.outline, operator.surface.nodes
+    with_it = operator.ended_stiffness.matrix
+    outline, nodes = operator.ended_stiffness.ended.outline, operator.ended_stiffness.nodes
     per_length = thickness(
         outline, operator.bonds.family, operator.moduli, np.arange(len(outline.edges))
     )
@@ -92,7 +92,7 @@ def test_the_membranes_energy_by_hand(monkeypatch):
         "thickness",
         lambda *a: np.zeros(len(a[-1])),
     )
-    without = body(rectangle(20.0, 20.0, (0, 0.3)), 1.0, 2).surface.matrix
+    without = body(rectangle(20.0, 20.0, (0, 0.3)), 1.0, 2).ended_stiffness.matrix
     u = np.concatenate([(outline.nodes[nodes] * [0.3, -0.7]).T.ravel(), np.zeros(len(nodes))])
     along = outline.outward[:, ::-1] ** 2
     strain = along @ [0.3, -0.7]

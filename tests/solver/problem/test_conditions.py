@@ -183,9 +183,9 @@ def test_a_selection_is_one_boolean_a_particle(answer):
 def resultant(parts, component):
     """Force of an edge's load: on particles, or on the surface's nodes."""
     carried = parts.load[component].sum()
-    if parts.pull is not None:
-        carried += parts.pull[component].sum()
-    return carried * parts.family.cell
+    if parts.nodal_load is not None:
+        carried += parts.nodal_load[component].sum()
+    return carried * parts.family.cell_area
 
 
 treatments = st.sampled_from(["none", "volume", "extrapolated"])

@@ -51,7 +51,7 @@ def _around(inside: Callable[[np.ndarray], np.ndarray], keep: int) -> Broken:
         half = family.size // 2
         mask = np.zeros((half, lattice.count), dtype=bool)
         mine, number = inside(lattice.points), lattice.number()
-        rows, columns = lattice.cells
+        rows, columns = lattice.rows_columns
         for o, (dx, dy) in enumerate(family.offsets[:half]):
             neighbour = number[rows + dy, columns + dx]
             there = neighbour >= 0
