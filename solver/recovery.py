@@ -7,7 +7,7 @@ with the surface treatment ``extrapolated`` bonds that end at the surface stand 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 
 from . import bonds as bond_room
 from .arrays import Array
-from .material import ConductiveModuli, ElasticModuli
+from .material import Family, Moduli
+from .material.physics import ELASTICITY, HEAT, Physics
+from .material.strains import directions, elongations
 from .solution import Solution
 
 
@@ -26,34 +28,38 @@ class _Pair:
 
     index: int
     weight: float
-    factor: Array
+    strength: Array
     length: float
     normal: Array
-    tangent: Array
+    directions: Array
     difference: Array
-    ends: Array
+    strains: Array
 
 
 def _pairs(solution: Solution) -> Iterator[_Pair]:
-    """The bonds of each offset: `difference` and sum of the `ends`, shape (components, N)."""
-    parts = solution.discretisation
-    lattice, family, bonds = parts.lattice, parts.family, parts.bonds
+    """The bonds of each offset: differences (components, N) and strains (strains, N)."""
+    body = solution.discretisation
+    lattice, family, bonds, moduli = body.lattice, body.family, body.bonds, body.moduli
     # Parts set aside are NaN and have no bonds: zeros keep them from spoiling their neighbours,
-    # whose bonds to them carry the factor 0.
-    known = np.nan_to_num(solution.unknowns, nan=0.0)
+    # whose bonds to them have no strength.
+    known = np.nan_to_num(solution.values, nan=0.0)
     grid = lattice.to_grid(known)
     rows, columns = lattice.rows_columns
     for o, (dx, dy) in enumerate(family.offsets):
         there = grid[:, rows + dy, columns + dx]
+        length = float(family.length[o])
+        normal = np.broadcast_to(family.normal[o][:, None], (2, lattice.count))
+        turn = 0.5 * length * (there[-1] + known[-1]) if moduli.turns else np.zeros(lattice.count)
+        strains = elongations(moduli.strains, normal, there - known, turn) / length
         yield _Pair(
             o,
             float(family.weight[o] * family.cell_area),
             bonds.strength(o),
-            float(family.length[o]),
+            length,
             family.normal[o],
-            family.tangent[o],
+            directions(moduli.strains, family.normal[o]),
             there - known,
-            there + known,
+            strains,
         )
 
 
@@ -80,9 +86,9 @@ class _Ends:
 
 def _ends(solution: Solution) -> _Ends | None:
     """The bonds that end at the surface, if the body has any."""
-    parts = solution.discretisation
-    ended, surface, family = parts.bonds.ended, parts.operator.ended_stiffness, parts.family
-    nodal = parts.surface_values(solution.unknowns)
+    body = solution.discretisation
+    ended, surface, family = body.bonds.ended, body.operator.ended_stiffness, body.family
+    nodal = body.surface_values(solution.unknowns)
     if ended is None or surface is None or nodal is None:
         return None
     strains, difference = surface.strains(
@@ -99,29 +105,24 @@ def _aside(solution: Solution, result: Array) -> Array:
     return result
 
 
-def _elastic(solution: Solution) -> ElasticModuli:
-    moduli = solution.discretisation.moduli
-    if not isinstance(moduli, ElasticModuli):
-        raise TypeError("stress and rotation are recovered from elastic solutions only")
-    return moduli
+def _need(solution: Solution, physics: Physics, what: str) -> None:
+    if solution.physics is not physics:
+        raise TypeError(
+            f"{what} is recovered from solutions of {physics.name} only, not of "
+            f"{solution.physics.name}"
+        )
 
 
-def _stretch(pair: _Pair, spacing: float) -> tuple[Array, Array]:
-    """Stretch s and shear γ (Eqs. 1–2) of the bonds of one offset, shape (N,)."""
-    eta = pair.difference[:2]
-    s = (pair.normal @ eta) / pair.length
-    gamma = (pair.tangent @ eta) / pair.length
-    if len(pair.difference) == 3:
-        gamma = gamma - 0.5 * pair.ends[2] / spacing
-    return s, gamma
+def _force(pair: _Pair, moduli: Moduli) -> Array:
+    """Pairwise force density f_n n + f_t t with its strength (Eq. 21), or k g n, shape (2, N)."""
+    stiffness = moduli.stiffness[:, pair.index]
+    return pair.strength * np.einsum("a,ai,an->in", stiffness, pair.directions, pair.strains)
 
 
-def _force(pair: _Pair, moduli: ElasticModuli, spacing: float) -> Array:
-    """Pairwise force density f_n n + f_t t with its bond factor (Eq. 21), shape (2, N)."""
-    s, gamma = _stretch(pair, spacing)
-    axial = pair.factor * moduli.normal[pair.index] * s
-    transverse = pair.factor * moduli.shear[pair.index] * gamma
-    return np.outer(pair.normal, axial) + np.outer(pair.tangent, transverse)
+def _ended_force(ends: _Ends, moduli: Moduli, family: Family) -> Array:
+    """The same of the bonds that end at the surface, shape (2, bonds)."""
+    along = directions(moduli.strains, family.normal[ends.offset].T)
+    return np.einsum("ak,aik,ak->ik", moduli.stiffness[:, ends.offset], along, ends.strains)
 
 
 def stress(solution: Solution, rule: Literal["plane", "family"] = "plane") -> Array:
@@ -150,26 +151,24 @@ def stress(solution: Solution, rule: Literal["plane", "family"] = "plane") -> Ar
     ValueError
         If the rule is unknown.
     """
-    moduli = _elastic(solution)
-    lattice, family = solution.discretisation.lattice, solution.discretisation.family
+    _need(solution, ELASTICITY, "stress")
+    body = solution.discretisation
+    lattice, family, moduli = body.lattice, body.family, body.moduli
     result = np.zeros((2, 2, lattice.count))
     if rule == "family":
         for pair in _pairs(solution):
-            force = _force(pair, moduli, solution.spacing) * (0.5 * pair.weight * pair.length)
+            force = _force(pair, moduli) * (0.5 * pair.weight * pair.length)
             result += force[:, None, :] * pair.normal[None, :, None]
         if (ends := _ends(solution)) is not None:
-            o = ends.offset
-            axial, transverse = moduli.normal[o], moduli.shear[o]
-            force = family.normal[o].T * (axial * ends.strains[0])
-            if len(ends.strains) == 2:
-                force += family.tangent[o].T * (transverse * ends.strains[1])
-            force *= 0.5 * ends.weight * family.length[o]
-            ends.add(force[:, None] * family.normal[o].T[None], result)
+            normal = family.normal[ends.offset].T
+            force = _ended_force(ends, moduli, family)
+            force *= 0.5 * ends.weight * family.length[ends.offset]
+            ends.add(force[:, None] * normal[None], result)
     elif rule == "plane":
         rows, columns = lattice.rows_columns
         for pair in _pairs(solution):
             offset = family.offsets[pair.index]
-            force = _force(pair, moduli, solution.spacing)
+            force = _force(pair, moduli)
             force = lattice.to_grid(force * (pair.weight * family.cell_area / solution.spacing))
             for axis in (0, 1):
                 for start, share in _crossings(offset, axis):
@@ -225,23 +224,21 @@ def flux(solution: Solution, rule: Literal["consistent", "hotter"] = "consistent
     ValueError
         If the rule is unknown.
     """
-    moduli = solution.discretisation.moduli
-    if not isinstance(moduli, ConductiveModuli):
-        raise TypeError("flux is recovered from conductive solutions only")
+    _need(solution, HEAT, "flux")
     if rule not in ("consistent", "hotter"):
         raise ValueError(f"unknown flux rule {rule!r}; known: consistent, hotter")
-    result = np.zeros((2, solution.discretisation.lattice.count))
+    body = solution.discretisation
+    result = np.zeros((2, body.lattice.count))
     for pair in _pairs(solution):
-        flow = pair.factor * (moduli.conductivity[pair.index] * pair.weight / pair.length)
-        flow = flow * pair.difference[0]
-        share = np.where(pair.difference[0] > 0, 1.0, 0.0) if rule == "hotter" else 0.5
-        result -= np.outer(pair.normal, share * flow)
+        result -= _share(rule, pair.strains[0]) * pair.weight * _force(pair, body.moduli)
     if (ends := _ends(solution)) is not None:
-        o, slope = ends.offset, ends.strains[0]
-        part = np.where(slope > 0, 1.0, 0.0) if rule == "hotter" else 0.5
-        flow = part * ends.weight * moduli.conductivity[o] * slope
-        ends.add(-flow * solution.discretisation.family.normal[o].T, result)
+        share = _share(rule, ends.strains[0])
+        ends.add(-share * ends.weight * _ended_force(ends, body.moduli, body.family), result)
     return _aside(solution, result.T)
+
+
+def _share(rule: str, gradient: Array) -> Array:
+    return np.where(gradient > 0, 1.0, 0.0) if rule == "hotter" else np.full_like(gradient, 0.5)
 
 
 def strain_energy_density(solution: Solution) -> Array:
@@ -251,25 +248,15 @@ def strain_energy_density(solution: Solution) -> Array:
     were whole, so that a homogeneous strain has its density right up to the edge. In conduction
     the macro-potential of Eq. 115.
     """
-    moduli = solution.discretisation.moduli
-    result = np.zeros(solution.discretisation.lattice.count)
+    body = solution.discretisation
+    moduli, length = body.moduli, body.moduli.pair_length(body.family)
+    result = np.zeros(body.lattice.count)
     for pair in _pairs(solution):
-        if isinstance(moduli, ConductiveModuli):
-            density = moduli.conductivity[pair.index] * (pair.difference[0] / pair.length) ** 2
-        else:
-            s, gamma = _stretch(pair, solution.spacing)
-            density = moduli.normal[pair.index] * s**2 + moduli.shear[pair.index] * gamma**2
-            density = density * pair.length
-        result += 0.25 * pair.weight * pair.factor * density
+        density = length[pair.index] * (moduli.stiffness[:, pair.index] @ pair.strains**2)
+        result += 0.25 * pair.weight * pair.strength * density
     if (ends := _ends(solution)) is not None:
         o = ends.offset
-        if isinstance(moduli, ConductiveModuli):
-            density = moduli.conductivity[o] * ends.strains[0] ** 2
-        else:
-            density = moduli.normal[o] * ends.strains[0] ** 2
-            if len(ends.strains) == 2:
-                density += moduli.shear[o] * ends.strains[1] ** 2
-            density *= solution.discretisation.family.length[o]
+        density = length[o] * (moduli.stiffness[:, o] * ends.strains**2).sum(axis=0)
         ends.add(0.25 * ends.weight * density, result)
     return _aside(solution, result)
 
@@ -286,11 +273,11 @@ def displacement_gradient(solution: Solution) -> Array:
 
     Exact for linear fields in every family that is not degenerate.
     """
-    _elastic(solution)
+    _need(solution, ELASTICITY, "a displacement gradient")
     count = solution.discretisation.lattice.count
     moment, slope = np.zeros((count, 2, 2)), np.zeros((count, 2, 2))
     for pair in _pairs(solution):
-        weight = pair.weight * (pair.factor > 0)
+        weight = pair.weight * (pair.strength > 0)
         xi = pair.length * pair.normal
         moment += weight[:, None, None] * np.outer(xi, xi)
         slope += (weight * pair.difference[:2]).T[:, :, None] * xi
@@ -309,3 +296,31 @@ def macrorotation(solution: Solution) -> Array:
     """½ (∂u2/∂x1 − ∂u1/∂x2), shape (N,), rad: what θ tends to as δ → 0 (Eq. 85)."""
     gradient = displacement_gradient(solution)
     return 0.5 * (gradient[:, 1, 0] - gradient[:, 0, 1])
+
+
+def fields(solution: Solution) -> dict[str, Array]:
+    """What is worth writing beside the solved fields, by name, (N,) or (N, 2) arrays in SI units.
+
+    Stress components as stress11, stress22, stress12 (the mean of both shears); or the flux.
+    """
+    return _RECOVERED[solution.physics.name](solution)
+
+
+def _stresses(solution: Solution) -> dict[str, Array]:
+    found = stress(solution)
+    return {
+        "stress11": found[:, 0, 0],
+        "stress22": found[:, 1, 1],
+        "stress12": 0.5 * (found[:, 0, 1] + found[:, 1, 0]),
+    }
+
+
+def _fluxes(solution: Solution) -> dict[str, Array]:
+    return {"flux": flux(solution)}
+
+
+#: Recovered fields of each physics.
+_RECOVERED: dict[str, Callable[[Solution], dict[str, Array]]] = {
+    ELASTICITY.name: _stresses,
+    HEAT.name: _fluxes,
+}

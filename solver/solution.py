@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator
 
 from .arrays import Array
+from .material.physics import Physics
 from .problem import Description, Discretisation
 
 
@@ -90,24 +91,54 @@ class Solution:
         """Particles of which everything is prescribed, or which were set aside, shape (N,)."""
         return np.logical_and.reduce(self.discretisation.prescribed, axis=0)
 
-    def _need(self, elastic: bool) -> None:
-        if self.scene.elastic != elastic:
-            held = "temperatures" if elastic else "displacements"
-            raise AttributeError(f"this solution holds {held}, not what was asked for")
+    @property
+    def physics(self) -> Physics:
+        """What was solved: it knows the names of the fields."""
+        return self.discretisation.moduli.physics
+
+    @property
+    def values(self) -> Array:
+        """Values of all unknowns in their own units, shape (components, N): u1, u2, θ, or T."""
+        return self._unscaled(self.unknowns)
+
+    def fields(self) -> dict[str, Array]:
+        """Everything that was solved for, by name: (N,) or (N, 2) arrays in SI units."""
+        return {name: self._field(name) for name in self.physics.fields}
+
+    def summary(self) -> dict[str, Any]:
+        """Plain values that say what was solved and how, for JSON."""
+        return {"physics": self.physics.name, **self.statistics.as_dict()}
+
+    def _unscaled(self, unknowns: Array) -> Array:
+        return unknowns / self.physics.scales(self.spacing, len(unknowns))[:, None]
+
+    def _field(self, name: str, unknowns: Array | None = None) -> Array:
+        """A field at the particles, or at the surface's nodes from their unknowns."""
+        known = self.physics.fields
+        if name not in known:
+            raise AttributeError(
+                f"a solution of {self.physics.name} holds {', '.join(known)}, not {name}"
+            )
+        values = self.values if unknowns is None else self._unscaled(unknowns)
+        which = [k for k in known[name] if k < len(values)]
+        if not which:  # the solid has no such unknown
+            return np.full(values.shape[1], np.nan)
+        return values[which[0]] if len(which) == 1 else values[which].T
 
     @property
     def displacement(self) -> Array:
         """u, shape (N, 2), m."""
-        self._need(True)
-        return self.unknowns[:2].T
+        return self._field("displacement")
 
     @property
     def rotation(self) -> Array:
         """θ, shape (N,), rad; NaN where the solid has no rotations (no shear stiffness)."""
-        self._need(True)
-        if len(self.unknowns) < 3:
-            return np.full(self.unknowns.shape[1], np.nan)
-        return self.unknowns[2] / self.spacing
+        return self._field("rotation")
+
+    @property
+    def temperature(self) -> Array:
+        """T, shape (N,), K."""
+        return self._field("temperature")
 
     @property
     def surface_points(self) -> Array:
@@ -117,24 +148,16 @@ class Solution:
             return np.zeros((0, 2))
         return surface.ended.outline.nodes[surface.nodes]
 
-    def _at_surface(self) -> Array:
-        values = self.discretisation.surface_values(self.unknowns)
-        return np.zeros((len(self.unknowns), 0)) if values is None else values
+    def _at_surface(self, name: str) -> Array:
+        nodal = self.discretisation.surface_values(self.unknowns)
+        return self._field(name, np.zeros((len(self.unknowns), 0)) if nodal is None else nodal)
 
     @property
     def surface_displacement(self) -> Array:
         """u at the surface's nodes, shape (s, 2), m."""
-        self._need(True)
-        return self._at_surface()[:2].T
+        return self._at_surface("displacement")
 
     @property
     def surface_temperature(self) -> Array:
         """T at the surface's nodes, shape (s,), K."""
-        self._need(False)
-        return self._at_surface()[0]
-
-    @property
-    def temperature(self) -> Array:
-        """T, shape (N,), K (the potential, V, in electrical conduction)."""
-        self._need(False)
-        return self.unknowns[0]
+        return self._at_surface("temperature")

@@ -166,18 +166,10 @@ def fields(solution: Solution) -> dict[str, np.ndarray]:
     """What a solved scene has to write: unknowns and what is recovered from them."""
     from solver import recovery
 
-    found = {"prescribed": solution.prescribed.astype(float)}
-    if solution.scene.elastic:
-        found["displacement"] = solution.displacement
-        if not np.isnan(solution.rotation).all():
-            found["rotation"] = solution.rotation
-        stress = recovery.stress(solution, rule="plane")
-        found["stress11"], found["stress22"] = stress[:, 0, 0], stress[:, 1, 1]
-        found["stress12"] = 0.5 * (stress[:, 0, 1] + stress[:, 1, 0])
-    else:
-        found["temperature"] = solution.temperature
-        found["flux"] = recovery.flux(solution, rule="consistent")
-    return found
+    # A solid without shear stiffness has no rotations.
+    solved = solution.fields().items()
+    known = {name: values for name, values in solved if not np.isnan(values).all()}
+    return {"prescribed": solution.prescribed.astype(float), **known, **recovery.fields(solution)}
 
 
 def _known(source: _Source, section: str, table: Mapping[str, Any], keys: set[str]) -> None:

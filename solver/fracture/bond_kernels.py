@@ -12,6 +12,8 @@ from typing import Any
 
 import numba as nb
 
+from ..material.strains import sheared, stretched
+
 _OPTIONS: Any = {"parallel": True, "cache": True, "fastmath": {"contract", "nsz"}, "nogil": True}
 
 
@@ -26,8 +28,8 @@ def bond_energies(grid, segments, steps, geometry, factors, tension, out):
     segments : uint64 (s, 3)
     steps : uint64 (h,)
     geometry : float64 (h, 5)
-        n1, n2, |ξ|/(2 Δx), a, b of each half offset. Here s = η·n and γ = η·t − |ξ|/2 (θ + θ'),
-        not divided by |ξ|: that belongs into a and b.
+        n1, n2, |ξ|/(2 Δx), a, b of each half offset. s and γ are not divided by |ξ|: that belongs
+        into a and b.
     factors : float64 (h, N)
         0 for bonds that do not exist.
     tension : bool
@@ -43,8 +45,8 @@ def bond_energies(grid, segments, steps, geometry, factors, tension, out):
             row, factor = out[o], factors[o]
             for j in range(size):
                 dx, dy = ux[ahead + j] - ux[cell + j], uy[ahead + j] - uy[cell + j]
-                axial = nx * dx + ny * dy
-                shear = nx * dy - ny * dx - half * (th[ahead + j] + th[cell + j])
+                axial = stretched(nx, ny, dx, dy)
+                shear = sheared(nx, ny, dx, dy, half * (th[ahead + j] + th[cell + j]))
                 value = factor[first + j] * (a * axial * axial + b * shear * shear)
                 row[first + j] = 0.0 if tension and axial < 0.0 else value
 
@@ -68,9 +70,8 @@ def bond_work(grid, other, segments, steps, geometry, factors, out):
             for j in range(size):
                 dx, dy = ux[ahead + j] - ux[cell + j], uy[ahead + j] - uy[cell + j]
                 ex, ey = vx[ahead + j] - vx[cell + j], vy[ahead + j] - vy[cell + j]
-                shear = nx * dy - ny * dx - half * (th[ahead + j] + th[cell + j])
-                sheer = nx * ey - ny * ex - half * (ph[ahead + j] + ph[cell + j])
-                total += factor[first + j] * (
-                    a * (nx * dx + ny * dy) * (nx * ex + ny * ey) + b * shear * sheer
-                )
+                shear = sheared(nx, ny, dx, dy, half * (th[ahead + j] + th[cell + j]))
+                sheer = sheared(nx, ny, ex, ey, half * (ph[ahead + j] + ph[cell + j]))
+                axial = stretched(nx, ny, dx, dy) * stretched(nx, ny, ex, ey)
+                total += factor[first + j] * (a * axial + b * shear * sheer)
         out[s] = total

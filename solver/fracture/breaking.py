@@ -19,6 +19,7 @@ from ..arrays import Array, Indices, Mask
 from ..errors import SceneError
 from ..geometry import Where, select
 from ..material import ElasticModuli, Family
+from ..material.strains import elongations
 from ..operators import segments
 from ..problem import Discretisation
 from . import bond_kernels
@@ -106,8 +107,10 @@ class Breakable:
         criterion: Criterion = "total",
     ) -> None:
         moduli, family = discretisation.moduli, discretisation.family
-        if not isinstance(moduli, ElasticModuli):
-            raise SceneError("bonds break in elastic bodies only: conduction has no bond energy")
+        if not moduli.physics.breakable or not isinstance(moduli, ElasticModuli):
+            raise SceneError(
+                f"bonds break in elastic bodies only: {moduli.physics.name} has no bond energy"
+            )
         if criterion not in ("total", "axial"):
             raise SceneError(f"criterion must be 'total' or 'axial', not {criterion!r}")
         _refuse_negative(moduli, criterion)
@@ -213,9 +216,9 @@ class Breakable:
         nx, ny, half, a, b = self._stored[o].T
         field = np.zeros((3, self.lattice.count))
         field[: len(unknowns)] = np.nan_to_num(unknowns)
-        (dx, dy), turn = field[:2, q] - field[:2, p], field[2, q] + field[2, p]
-        shear = nx * dy - ny * dx - half * turn
-        return self.strengths.ravel()[bonds] * (a * (nx * dx + ny * dy) ** 2 + b * shear**2)
+        turn = half * (field[2, q] + field[2, p])
+        s, gamma = elongations(("s", "γ"), np.stack([nx, ny]), field[:, q] - field[:, p], turn)
+        return self.strengths.ravel()[bonds] * (a * s**2 + b * gamma**2)
 
     def cost_of(self, bonds: Indices) -> Array:
         """Energy that breaking these bonds takes, w_c α Λ Δv_p Δv_q."""

@@ -207,7 +207,7 @@ class Equilibrium:
     def loose(self) -> Indices:
         """Particles of parts that nothing holds any more."""
         held = self.prescribed
-        found = [members for members, _ in unheld(self.bonds, held, True)]
+        found = [members for members, _ in unheld(self.bonds, held, self.operator.moduli.physics)]
         none = np.zeros(len(self.aside), dtype=bool)
         return np.nonzero(np.logical_or.reduce([none, *found]) & ~held.all(axis=0))[0]
 

@@ -5,15 +5,19 @@ What would do is looked for only where something is refused, which takes some te
 
 from __future__ import annotations
 
+from functools import singledispatch
+
 import numpy as np
 
 from ..errors import CalibrationError, InadmissibleMaterialError, NotRepresentableError
 from .calibration import Calibration, calibrate, representable, representable_by_directions
 from .family import Family
 from .laws import AngularLaw, TwoHarmonic, UniformShear
-from .moduli import ElasticModuli, Moduli, effective_tensor
+from .moduli import Moduli, effective_tensor
 from .stability import Stability, assess
-from .tensors import ConductivityTensor, ElasticTensor, Material
+from .tensors import ElasticTensor, Material
+
+Remedies = tuple[tuple[Calibration, AngularLaw | None], ...]
 
 # Largest m at which non-negative moduli are looked for.
 _LARGEST_M = 14
@@ -21,14 +25,14 @@ _LARGEST_M = 14
 _REMEDY_HORIZONS = range(2, 9)
 _REMEDY_GRID = 16
 # In order of preference: non-negative bonds keep damaged bodies stable too.
-_ELASTIC_REMEDIES: tuple[tuple[Calibration, AngularLaw | None], ...] = (
+_ELASTIC_REMEDIES: Remedies = (
     ("positive", None),
     ("positive", UniformShear()),
     ("lattice", None),
     ("lattice", UniformShear()),
     ("lattice", TwoHarmonic()),
 )
-_CONDUCTIVE_REMEDIES: tuple[tuple[Calibration, AngularLaw | None], ...] = (
+_REMEDIES: Remedies = (
     ("positive", None),
     ("lattice", None),
 )
@@ -46,15 +50,7 @@ def remedy(family: Family, material: Material) -> str:
     family : Family
     material : ElasticTensor or ConductivityTensor
     """
-    remedies, cause = _CONDUCTIVE_REMEDIES, ""
-    if isinstance(material, ElasticTensor):
-        remedies = _ELASTIC_REMEDIES
-        if material.voigt[2, 2] < material.voigt[0, 1]:
-            remedies = tuple(r for r in remedies if r[0] == "lattice")
-            cause = (
-                ": C66 < C12 asks for shear bonds that are negative on the mean, and here they "
-                "outweigh the axial ones"
-            )
+    remedies, cause = _choices(material)
     # Larger families first: what fails for want of directions or of area finds more there.
     larger = [m for m in _REMEDY_HORIZONS if m > family.m]
     smaller = [m for m in _REMEDY_HORIZONS if m < family.m]
@@ -71,6 +67,22 @@ def remedy(family: Family, material: Material) -> str:
     return (
         f"No calibration or law of this package is stable for it at any "
         f"m ≤ {_REMEDY_HORIZONS[-1]}{cause}. Use finite elements for this solid."
+    )
+
+
+@singledispatch
+def _choices(material: Material) -> tuple[Remedies, str]:
+    """Calibrations and laws to try, in order of preference, and why there are no more."""
+    return _REMEDIES, ""
+
+
+@_choices.register
+def _(material: ElasticTensor) -> tuple[Remedies, str]:
+    if material.voigt[2, 2] >= material.voigt[0, 1]:
+        return _ELASTIC_REMEDIES, ""
+    return tuple(r for r in _ELASTIC_REMEDIES if r[0] == "lattice"), (
+        ": C66 < C12 asks for shear bonds that are negative on the mean, and here they outweigh "
+        "the axial ones"
     )
 
 
@@ -118,8 +130,7 @@ def _instead_of(family: Family, moduli: Moduli) -> str:
     """`remedy` for the tensor that these moduli make."""
     tensor = effective_tensor(family, moduli)
     try:
-        elastic = isinstance(moduli, ElasticModuli)
-        material = ElasticTensor(tensor) if elastic else ConductivityTensor(tensor)
+        material = moduli.tensor(tensor)
     except ValueError:
         return "The lattice sums make no positive-definite tensor: use calibration='lattice'."
     return remedy(family, material)

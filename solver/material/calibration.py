@@ -21,6 +21,7 @@ so the energy per volume of a bulk particle makes the lattice an elastic solid o
 
 from __future__ import annotations
 
+from functools import singledispatch
 from typing import Literal, get_args
 
 import numpy as np
@@ -28,7 +29,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import CalibrationError, NotRepresentableError
 from .family import Family
-from .laws import AngularLaw, UniformShear, default_law
+from .laws import AngularLaw, Cosine, TwoHarmonic, UniformShear
 from .moduli import (
     PAIRS2,
     PAIRS3,
@@ -86,14 +87,32 @@ def calibrate(
         raise ValueError(
             f"unknown calibration {calibration!r}; known: {', '.join(get_args(Calibration))}"
         )
-    chosen, law = law, default_law(material) if law is None else law
-    if isinstance(material, ElasticTensor):
-        moduli = _elastic(family, material, calibration, law)
-        mixed = moduli.shear.min() < 0 < moduli.shear.max()
-        if chosen is None and calibration == "lattice" and mixed:
-            moduli = _elastic(family, material, calibration, UniformShear())
-        return moduli
-    return _conductive(family, material, calibration, law)
+    return _calibrated(material, family, calibration, law)
+
+
+@singledispatch
+def _calibrated(
+    material: Material, family: Family, calibration: Calibration, law: AngularLaw | None
+) -> Moduli:
+    raise TypeError(f"no calibration is known for a {type(material).__name__}")
+
+
+@_calibrated.register
+def _(
+    material: ElasticTensor, family: Family, calibration: Calibration, law: AngularLaw | None
+) -> Moduli:
+    moduli = _elastic(family, material, calibration, TwoHarmonic() if law is None else law)
+    mixed = moduli.shear.min() < 0 < moduli.shear.max()
+    if law is None and calibration == "lattice" and mixed:
+        return _elastic(family, material, calibration, UniformShear())
+    return moduli
+
+
+@_calibrated.register
+def _(
+    material: ConductivityTensor, family: Family, calibration: Calibration, law: AngularLaw | None
+) -> Moduli:
+    return _conductive(family, material, calibration, Cosine() if law is None else law)
 
 
 def _solve(system: Array, target: Array, what: str) -> Array:
@@ -177,15 +196,28 @@ def _positive_elastic(
 def _positive_system(family: Family, material: Material) -> tuple[Array, Array]:
     """Moment rows over half the family (opposite bonds are equal) and their targets."""
     half = family.size // 2
-    psi = family.angle[:half]
-    weight = 2 * bond_weights(family, material)[:half]
-    if isinstance(material, ConductivityTensor):
-        return weight * conductive_moments(psi), material.matrix[PAIRS2]
+    return _rows(material, family.angle[:half], 2 * bond_weights(family, material)[:half])
+
+
+@singledispatch
+def _rows(material: Material, psi: Array, weight: Array) -> tuple[Array, Array]:
+    """Moment rows of bonds at angles ψ with some weights, and the material's moments."""
+    raise TypeError(f"no moments are known of a {type(material).__name__}")
+
+
+@_rows.register
+def _(material: ElasticTensor, psi: Array, weight: Array) -> tuple[Array, Array]:
     moments_n, moments_t = elastic_moments(psi)
+    # Rotation and homogeneous strain stay apart.
     decoupled = weight * stretch_rows(psi)[1][1:]
     rows = np.hstack([weight * moments_n, weight * moments_t])
     rows = np.vstack([rows, np.hstack([np.zeros_like(decoupled), decoupled])])
     return rows, np.concatenate([material.voigt[PAIRS3], [0.0, 0.0]])
+
+
+@_rows.register
+def _(material: ConductivityTensor, psi: Array, weight: Array) -> tuple[Array, Array]:
+    return weight * conductive_moments(psi), material.matrix[PAIRS2]
 
 
 def representable(family: Family, material: Material) -> bool:
@@ -203,13 +235,7 @@ def representable_by_directions(material: Material, count: int = 360) -> bool:
     directions; half a degree between these decides but the last 1e-4 of that growth.
     """
     psi = np.pi * np.arange(count) / count
-    if isinstance(material, ConductivityTensor):
-        return feasible(conductive_moments(psi), material.matrix[PAIRS2])
-    moments_n, moments_t = elastic_moments(psi)
-    decoupled = stretch_rows(psi)[1][1:]
-    rows = np.hstack([moments_n, moments_t])
-    rows = np.vstack([rows, np.hstack([np.zeros_like(decoupled), decoupled])])
-    return feasible(rows, np.concatenate([material.voigt[PAIRS3], [0.0, 0.0]]))
+    return feasible(*_rows(material, psi, np.ones(count)))
 
 
 def _conductive(

@@ -204,8 +204,3 @@ def _independent(normal: Array, shear: Array) -> tuple[Array, Array]:
     """Bases with separate coefficients for k_n and k_t."""
     zero_n, zero_t = np.zeros_like(normal), np.zeros_like(shear)
     return np.vstack([normal, zero_t]), np.vstack([zero_n, shear])
-
-
-def default_law(material: ElasticTensor | ConductivityTensor) -> AngularLaw:
-    """Two-harmonic in elasticity, the smallest non-negative cosⁿ law in conduction."""
-    return TwoHarmonic() if isinstance(material, ElasticTensor) else Cosine()

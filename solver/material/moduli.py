@@ -1,24 +1,108 @@
-"""Moduli of the bonds of a family, and the tensor that their sums make."""
+"""Moduli of the bonds of a family, and the tensor that their sums make.
+
+Moduli know what kind of bond they belong to: its strains, how many unknowns its ends have, and
+the energy of a pair,
+
+    ½ L Σ_a k_a ε_a² α Λ Δv_p Δv_q,      L = |ξ| in elasticity (Eq. 4), 1 in conduction (Eq. 112).
+"""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from ..arrays import Array
 from .family import Family
-from .tensors import ElasticTensor, Material
+from .physics import Physics
+from .strains import elongations, end_rows, homogeneous_shear, homogeneous_stretch
+from .tensors import ConductivityTensor, ElasticTensor, Material
 
+#: Products of pairs of entries in the order 11, 22, 12, 66, 16, 26 and 11, 22, 12.
 PAIRS3 = ([0, 1, 0, 2, 0, 1], [0, 1, 1, 2, 2, 2])
-
-
 PAIRS2 = ([0, 1, 0], [0, 1, 1])
 
 
+class Moduli(ABC):
+    """Stiffnesses of the bonds of a family, and what kind of bonds they are."""
+
+    #: The macroscopic tensor that such bonds make.
+    tensor: ClassVar[type[Material]]
+
+    @property
+    def physics(self) -> Physics:
+        """What these bonds are about."""
+        return self.tensor.physics
+
+    @property
+    @abstractmethod
+    def strains(self) -> tuple[str, ...]:
+        """Names of the strains that store energy, see `solver.material.strains`."""
+
+    @property
+    @abstractmethod
+    def stiffness(self) -> Array:
+        """k_a of every strain and bond, shape (strains, family size)."""
+
+    @property
+    @abstractmethod
+    def components(self) -> int:
+        """Unknowns of a particle."""
+
+    @abstractmethod
+    def homogeneous(self, normal: Array) -> Array:
+        """Each strain for the unit values of a homogeneous strain (Voigt) or gradient.
+
+        `normal` has shape (2, n), the result (strains, 3 or 2, n).
+        """
+
+    @abstractmethod
+    def wave_rows(self, direction: Array) -> Array:
+        """Strain (Voigt) or gradient of a wave a exp(i k·x) per i|k| a, (..., 3 or 2, a's)."""
+
+    @abstractmethod
+    def uniaxial(self, along: Array) -> Array:
+        """Unit stress (σ11, σ22, σ12) or flux along unit vectors (e, 2), shape (e, 3 or 2)."""
+
+    @property
+    def turns(self) -> bool:
+        """Whether particles have a rotation that some bond resists."""
+        return any(self.physics.turning[: self.components])
+
+    @property
+    def central(self) -> bool:
+        """Whether the solid lacks unknowns that its physics knows: no bond resists them."""
+        return self.components < len(self.physics.unknowns)
+
+    @property
+    def non_negative(self) -> bool:
+        """Whether no bond has a negative modulus."""
+        return bool(self.stiffness.min() >= 0)
+
+    @abstractmethod
+    def absolute(self) -> Moduli:
+        """The same with every negative modulus turned positive."""
+
+    def pair_length(self, family: Family) -> Array:
+        """L of the pair's energy, shape (family size,), m or 1."""
+        return pair_length(family, self.physics)
+
+    def scales(self, spacing: float) -> Array:
+        """What each unknown is multiplied by to enter the equations, shape (components,)."""
+        return self.physics.scales(spacing, self.components)
+
+    def end_rows(self, scales: Array, normal: Array, end: float, arm: Array) -> Array:
+        """`solver.material.strains.end_rows` of these bonds."""
+        return end_rows(self.strains, scales, normal, end, arm)
+
+
 @dataclass(frozen=True, eq=False)
-class ElasticModuli:
+class ElasticModuli(Moduli):
     """k_n and k_t of every bond of the family, shapes (n,), N/m⁵ per unit thickness."""
+
+    tensor: ClassVar[type[Material]] = ElasticTensor
 
     normal: Array
     shear: Array
@@ -29,30 +113,88 @@ class ElasticModuli:
         return bool(np.any(self.shear != 0.0))
 
     @property
-    def non_negative(self) -> bool:
-        """Whether no bond has a negative modulus."""
-        return bool(self.normal.min() >= 0 and self.shear.min() >= 0)
+    def strains(self) -> tuple[str, ...]:
+        return ("s", "γ") if self.has_shear else ("s",)
+
+    @property
+    def stiffness(self) -> Array:
+        return np.stack([self.normal, self.shear][: len(self.strains)])
+
+    @property
+    def components(self) -> int:
+        return 3 if self.has_shear else 2
+
+    def homogeneous(self, normal: Array) -> Array:
+        rows = homogeneous_stretch(normal), homogeneous_shear(normal)
+        return np.stack(rows[: len(self.strains)])
+
+    def wave_rows(self, direction: Array) -> Array:
+        return wave_strains(direction)
+
+    def uniaxial(self, along: Array) -> Array:
+        a, b = along.T
+        return np.column_stack([a * a, b * b, a * b])
+
+    def absolute(self) -> ElasticModuli:
+        return ElasticModuli(np.abs(self.normal), np.abs(self.shear))
 
 
 @dataclass(frozen=True, eq=False)
-class ConductiveModuli:
+class ConductiveModuli(Moduli):
     """k of every bond of the family, shape (n,), W/(m K) per m² and unit thickness."""
+
+    tensor: ClassVar[type[Material]] = ConductivityTensor
 
     conductivity: Array
 
     @property
-    def non_negative(self) -> bool:
-        """Whether no bond has a negative modulus."""
-        return bool(self.conductivity.min() >= 0)
+    def strains(self) -> tuple[str, ...]:
+        return ("g",)
+
+    @property
+    def stiffness(self) -> Array:
+        return self.conductivity[None]
+
+    @property
+    def components(self) -> int:
+        return 1
+
+    def homogeneous(self, normal: Array) -> Array:
+        return normal[None]
+
+    def wave_rows(self, direction: Array) -> Array:
+        return np.asarray(direction)[..., None]
+
+    def uniaxial(self, along: Array) -> Array:
+        return along
+
+    def absolute(self) -> ConductiveModuli:
+        return ConductiveModuli(np.abs(self.conductivity))
 
 
-Moduli = ElasticModuli | ConductiveModuli
+def pair_length(family: Family, physics: Physics) -> Array:
+    """L of the energy of a pair, shape (family size,), m or 1."""
+    return family.length if physics.energy_by_length else np.ones(family.size)
+
+
+def bond_weights(family: Family, material: Material) -> Array:
+    """½ α Λ L Δv of each bond, shape (n,)."""
+    return 0.5 * family.weight * family.cell_area * pair_length(family, material.physics)
+
+
+def wave_strains(direction: Array) -> Array:
+    """(ε11, ε22, 2ε12) of a wave a exp(i k·x) per i|k| a, directions (..., 2): (..., 3, 2)."""
+    n = np.asarray(direction)
+    rows = np.zeros((*n.shape[:-1], 3, 2))
+    rows[..., 0, 0], rows[..., 1, 1] = n[..., 0], n[..., 1]
+    rows[..., 2, 0], rows[..., 2, 1] = n[..., 1], n[..., 0]
+    return rows
 
 
 def stretch_rows(psi: Array) -> tuple[Array, Array]:
     """v_s and v_γ at angles ψ, each of shape (3, n)."""
-    c, s = np.cos(psi), np.sin(psi)
-    return np.array([c * c, s * s, c * s]), np.array([-c * s, c * s, 0.5 * (c * c - s * s)])
+    normal = np.array([np.cos(psi), np.sin(psi)])
+    return homogeneous_stretch(normal), homogeneous_shear(normal)
 
 
 def elastic_moments(psi: Array) -> tuple[Array, Array]:
@@ -69,23 +211,18 @@ def conductive_moments(psi: Array) -> Array:
     return n[a] * n[b]
 
 
-def bond_weights(family: Family, material: Material) -> Array:
-    """½ α Λ |ξ| Δv (elasticity) or ½ α Λ Δv (conduction) of each bond, shape (n,)."""
-    weight = 0.5 * family.weight * family.cell_area
-    return weight * family.length if isinstance(material, ElasticTensor) else weight
-
-
 def effective_tensor(family: Family, moduli: Moduli) -> Array:
     """The tensor that the lattice sums make: C with rotations condensed (3×3), or D (2×2)."""
-    if isinstance(moduli, ConductiveModuli):
-        weight = 0.5 * family.weight * family.cell_area * moduli.conductivity
-        return np.einsum("o,oi,oj->ij", weight, family.normal, family.normal)
-    weight = 0.5 * family.weight * family.cell_area * family.length
-    stretch, shear = stretch_rows(family.angle)
-    axial, transverse = weight * moduli.normal, weight * moduli.shear
-    tensor = (axial * stretch) @ stretch.T + (transverse * shear) @ shear.T
-    stiffness = transverse.sum()
-    coupling = shear @ transverse
-    if abs(stiffness) > 0 and np.abs(coupling).max() > 0:
-        tensor = tensor - np.outer(coupling, coupling) / stiffness
+    weight = 0.5 * family.weight * family.cell_area * moduli.pair_length(family)
+    stiffness = weight * moduli.stiffness
+    rows = moduli.homogeneous(family.normal.T)
+    tensor = np.einsum("an,ain,ajn->ij", stiffness, rows, rows)
+    if moduli.turns:
+        # A uniform rotation shears every bond by −θ.
+        still = np.zeros((moduli.components, family.size))
+        turned = elongations(moduli.strains, family.normal.T, still, np.ones(family.size))
+        resistance = float(np.einsum("an,an,an->", stiffness, turned, turned))
+        coupling = np.einsum("an,ain,an->i", stiffness, rows, turned)
+        if abs(resistance) > 0 and np.abs(coupling).max() > 0:
+            tensor = tensor - np.outer(coupling, coupling) / resistance
     return tensor

@@ -10,7 +10,7 @@ from scipy.optimize import minimize
 
 from ..arrays import Array
 from .family import Family
-from .moduli import ElasticModuli, Moduli, effective_tensor
+from .moduli import Moduli, effective_tensor
 from .symbol import brillouin_zone, margins, symbol
 
 Kind = Literal["positive", "central", "indefinite", "inadmissible"]
@@ -48,7 +48,7 @@ def assess(family: Family, moduli: Moduli, count: int = 32) -> Stability:
     Parameters
     ----------
     family : Family
-    moduli : ElasticModuli or ConductiveModuli
+    moduli : Moduli
     count : int
         Grid points along a half axis of the zone; the worst one is refined by a simplex search.
 
@@ -63,11 +63,10 @@ def assess(family: Family, moduli: Moduli, count: int = 32) -> Stability:
         return Stability("inadmissible", min(worst_share, 0.0), (0.0, 0.0), (0.0, 0.0))
     k = brillouin_zone(count)
     low = high = 0.0
-    if isinstance(moduli, ElasticModuli) and moduli.has_shear:
-        rotation = symbol(family, moduli, k)[:, 2, 2].real
-        scale = 0.5 * float(
-            (family.weight * family.cell_area * family.length * np.abs(moduli.shear)).sum()
-        )
+    if moduli.turns:
+        rotation = symbol(family, moduli, k)[:, -1, -1].real
+        # Its largest possible value: that of bonds of the same size and one sign, k = 0.
+        scale = float(symbol(family, moduli.absolute(), np.zeros(2))[-1, -1].real)
         low, high = float(rotation.min()) / scale, float(rotation.max()) / scale
         if low <= _SINGULAR and high >= -_SINGULAR:
             # H_θθ changes sign: the condensed symbol has a pole somewhere.
@@ -97,6 +96,6 @@ def assess(family: Family, moduli: Moduli, count: int = 32) -> Stability:
         kind = "inadmissible"
     elif high < 0:
         kind = "indefinite"
-    elif isinstance(moduli, ElasticModuli) and not moduli.has_shear:
+    elif moduli.central:
         kind = "central"
     return Stability(kind, margin, (float(worst[0]), float(worst[1])), (low, high))

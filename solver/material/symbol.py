@@ -18,74 +18,69 @@ import numpy as np
 
 from ..arrays import Array
 from .family import Family
-from .moduli import ConductiveModuli, ElasticModuli, Moduli, effective_tensor
+from .moduli import Moduli, effective_tensor, wave_strains
 
 
-def _half(family: Family) -> tuple[Array, Array, Array, Array]:
-    """Offsets in cells, w, normals and tangents of half the bonds (sums are doubled)."""
+def _half(family: Family) -> tuple[Array, Array]:
+    """Offsets in cells and α Λ Δv of half the bonds, twice: sums over them count both halves."""
     half = family.size // 2
-    return (
-        family.offsets[:half].astype(float),
-        2 * family.weight[:half] * family.cell_area,
-        family.normal[:half],
-        family.tangent[:half],
-    )
+    return family.offsets[:half].astype(float), 2 * family.weight[:half] * family.cell_area
 
 
 def symbol(family: Family, moduli: Moduli, k: Array) -> Array:
     """Hermitian symbol of one bulk row at wave vectors `k`.
 
+    With the phases ∓φ/2 at the two ends of a bond the share of every unknown in a strain is
+    (b e^{iφ/2} + a e^{−iφ/2}), a and b the rows of its ends: no cancellation for long waves.
+
     Parameters
     ----------
     family : Family
-    moduli : ElasticModuli or ConductiveModuli
+    moduli : Moduli
     k : ndarray, shape (..., 2)
         Wave vectors times the spacing, rad per cell.
 
     Returns
     -------
-    ndarray
-        Shape (..., 3, 3) complex (unknowns u1, u2, θ) in elasticity, (...,) real in conduction.
+    ndarray, shape (..., components, components), complex
+        Unknowns u1, u2, θ (rad), or T.
     """
-    offsets, weight, normal, tangent = _half(family)
+    offsets, weight = _half(family)
     half = len(weight)
-    phase = np.asarray(k, dtype=np.float64) @ offsets.T
-    lengths = family.length[:half]
-    # 1 − cos φ by the half angle: no cancellation for long waves.
-    lag = 2 * np.sin(0.5 * phase) ** 2
-    if isinstance(moduli, ConductiveModuli):
-        return lag @ (weight * moduli.conductivity[:half] / lengths**2)
-    axial = weight * moduli.normal[:half] / lengths
-    transverse = weight * moduli.shear[:half] / lengths
-    block = np.einsum("o,oi,oj->oij", axial, normal, normal)
-    block += np.einsum("o,oi,oj->oij", transverse, tangent, tangent)
-    result = np.zeros((*phase.shape[:-1], 3, 3), dtype=np.complex128)
-    result[..., :2, :2] = np.einsum("...o,oij->...ij", lag, block)
-    coupling = np.sin(phase) @ (0.5 * (transverse * lengths)[:, None] * tangent)
-    result[..., :2, 2] = 1j * coupling
-    result[..., 2, :2] = -1j * coupling
-    result[..., 2, 2] = (2.0 - lag) @ (0.25 * transverse * lengths**2)
-    return result
+    length = family.length[:half]
+    normal, arm = family.normal[:half].T, 0.5 * length
+    phase = 0.5 * np.asarray(k, dtype=np.float64) @ offsets.T
+    plain = np.ones(moduli.components)
+    first, last = (moduli.end_rows(plain, normal, end, arm) for end in (-1.0, 1.0))
+    even, odd = 0.5 * (first + last), 0.5 * (last - first)
+    rows = 2 * (
+        np.cos(phase)[..., None, None, :] * even + 1j * np.sin(phase)[..., None, None, :] * odd
+    )
+    stiffness = weight * moduli.pair_length(family)[:half] * moduli.stiffness[:, :half] / length**2
+    # Energy ½ per pair, and a pair has two ends.
+    return 0.5 * np.einsum("an,...abn,...acn->...bc", stiffness, rows.conj(), rows, optimize=True)
 
 
-def condensed_symbol(family: Family, moduli: ElasticModuli, k: Array) -> Array:
-    """Symbol with rotations eliminated, shape (..., 2, 2), real symmetric.
+def condensed_symbol(family: Family, moduli: Moduli, k: Array) -> Array:
+    """Symbol with rotations eliminated, real symmetric, shape (..., 2, 2), or (..., 1, 1).
 
     The coupling is purely imaginary, H_uθ = i c, so that the condensed block is
     H_uu − c cᵀ / H_θθ.
     """
     full = symbol(family, moduli, k)
-    block = full[..., :2, :2].real
-    if not moduli.has_shear:
-        return block
-    c, rotation = full[..., :2, 2].imag, full[..., 2, 2].real
+    if not moduli.turns:
+        return full.real
+    block = full[..., :-1, :-1].real
+    c, rotation = full[..., :-1, -1].imag, full[..., -1, -1].real
     with np.errstate(divide="ignore", invalid="ignore"):
         return block - c[..., :, None] * c[..., None, :] / rotation[..., None, None]
 
 
 def _smallest(block: Array) -> Array:
-    """Smaller eigenvalue of symmetric 2×2 blocks; −inf where they are not finite."""
-    a, b, c = block[..., 0, 0], block[..., 1, 1], block[..., 0, 1]
+    """Smallest eigenvalue of symmetric 1×1 or 2×2 blocks; −inf where they are not finite."""
+    a, b, c = block[..., 0, 0], block[..., -1, -1], block[..., 0, -1]
+    if block.shape[-1] == 1:
+        c = np.zeros_like(c)
     with np.errstate(invalid="ignore"):
         value = 0.5 * (a + b) - np.hypot(0.5 * (a - b), c)
     return np.where(np.isfinite(value), value, -np.inf)
@@ -95,28 +90,22 @@ def margins(family: Family, moduli: Moduli, k: Array) -> Array:
     """Relative smallest eigenvalue of the condensed symbol at wave vectors `k` ≠ 0, (..., 2)."""
     k = np.asarray(k, dtype=np.float64)
     half = family.size // 2
-    offsets, weight, _, _ = _half(family)
-    tensor = effective_tensor(family, moduli)
+    offsets, weight = _half(family)
     # Nonlocal Laplacian with the same weights and unit moduli: |k|² for long waves.
-    wave = weight * (1.0 if isinstance(moduli, ConductiveModuli) else family.length[:half])
+    wave = weight * moduli.pair_length(family)[:half]
     lag = 2 * np.sin(0.5 * k @ offsets.T) ** 2
     laplacian = lag @ (wave * (family.spacing / family.length[:half]) ** 2) / (0.25 * wave.sum())
     direction = k / np.linalg.norm(k, axis=-1, keepdims=True)
-    if isinstance(moduli, ConductiveModuli):
-        local = np.einsum("...i,ij,...j->...", direction, tensor, direction)
-        value = symbol(family, moduli, k)
-    else:
-        local = _smallest(acoustic_tensor(tensor, direction))
-        value = _smallest(condensed_symbol(family, moduli, k))
+    rows = moduli.wave_rows(direction)
+    tensor = effective_tensor(family, moduli)
+    local = _smallest(np.einsum("...ai,ab,...bj->...ij", rows, tensor, rows))
+    value = _smallest(condensed_symbol(family, moduli, k))
     return value * family.spacing**2 / (laplacian * local)
 
 
 def acoustic_tensor(voigt: Array, direction: Array) -> Array:
     """Γ_ik = C_ijkl n_j n_l for directions of shape (..., 2); result (..., 2, 2)."""
-    n = np.asarray(direction)
-    rows = np.zeros((*n.shape[:-1], 3, 2))
-    rows[..., 0, 0], rows[..., 1, 1] = n[..., 0], n[..., 1]
-    rows[..., 2, 0], rows[..., 2, 1] = n[..., 1], n[..., 0]
+    rows = wave_strains(direction)
     return np.einsum("...ai,ab,...bj->...ij", rows, voigt, rows)
 
 

@@ -6,12 +6,13 @@ A tensor is validated once, here, so that nothing downstream has to doubt it.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
+from .physics import ELASTICITY, HEAT, Physics
 
 Plane = Literal["stress", "strain"]
 
@@ -59,6 +60,8 @@ class ElasticTensor:
     >>> ElasticTensor.isotropic(E=1.0, nu=0.25).voigt[0, 0]
     np.float64(1.0666666666666667)
     """
+
+    physics: ClassVar[Physics] = ELASTICITY
 
     voigt: Array
 
@@ -186,6 +189,8 @@ class ConductivityTensor:
     ValueError
         If the matrix is not 2×2, not finite, not symmetric or not positive definite.
     """
+
+    physics: ClassVar[Physics] = HEAT
 
     matrix: Array
 

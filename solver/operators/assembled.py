@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from ..arrays import Array
+from .blocks import bond_blocks
 from .bond_operator import BondOperator
 
 
@@ -20,16 +21,14 @@ def to_csr(operator: BondOperator) -> sparse.csr_array:
     values: list[Array] = []
     ends: list[NDArray[np.int32]] = []
     starts: list[NDArray[np.int32]] = []
-    layout = {1: [[0]], 2: [[0, 1], [1, 2]], 3: [[0, 1, 3], [1, 2, 4], [3, 4, 5]]}[c]
+    _, coupling = bond_blocks(bonds.family, operator.moduli)
     for o, (dx, dy) in enumerate(bonds.family.offsets):
         neighbour = number[rows + dy, columns + dx]
         here = np.nonzero(neighbour >= 0)[0]
         factor = bonds.strength(o)[operator.active[here]]
         for a in range(c):
             for b in range(c):
-                # K_pq = [[−A, t̂], [−t̂ᵀ, c]]
-                sign = 1.0 if b == 2 else -1.0
-                values.append(sign * factor * operator.blocks[o, layout[a][b]])
+                values.append(factor * coupling[o, a, b])
                 starts.append((a * count + here).astype(np.int32))
                 ends.append((b * count + neighbour[here]).astype(np.int32))
     # As the kernels have them: the nodes' part follows as a whole.

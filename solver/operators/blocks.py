@@ -1,33 +1,48 @@
-"""Entries of the bond blocks: what one bond adds to the rows of its ends."""
+"""Entries of the bond blocks: what one bond adds to the rows of its ends.
+
+With the rows a and b of a bond's ends (`solver.material.strains`), the energy
+½ L k ε² α Λ Δv_p Δv_q, ε = a·u_p + b·u_q, adds per volume of a particle w L k aᵀa to K_pp and
+w L k aᵀb to K_pq, w = α Λ Δv (Eqs. 19–20).
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..arrays import Array
-from ..bonds import Bonds
-from ..material import ConductiveModuli, Moduli
+from ..material import Family, Moduli
+
+#: Entries of a symmetric block in the kernels' order: 11, 12, 22, 1θ, 2θ, θθ.
+ENTRIES = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
 
 
-def offset_blocks(bonds: Bonds, moduli: Moduli) -> Array:
-    """Entries of the bond blocks of all offsets, shape (family size, 6, 3 or 1).
+def entries(components: int) -> list[tuple[int, int]]:
+    """Rows and columns of the entries of a block, in the kernels' order."""
+    return [(a, b) for a, b in ENTRIES if b < components]
 
-    Elasticity: A11, A12, A22, t̂1, t̂2, c (rotation scaled by the spacing), the first three only
-    where no bond resists shear. Conduction: w k/|ξ|².
+
+def bond_blocks(family: Family, moduli: Moduli) -> tuple[Array, Array]:
+    """K_pp and K_pq of whole bonds, each of shape (family size, components, components).
+
+    Rotations are scaled by the spacing.
     """
-    family = bonds.family
-    weight = family.weight * family.cell_area
-    if isinstance(moduli, ConductiveModuli):
-        return (weight * moduli.conductivity / family.length**2)[:, None]
-    n, t = family.normal, family.tangent
-    axial = weight * moduli.normal / family.length
-    transverse = weight * moduli.shear / family.length
-    block = [
-        axial * n[:, a] * n[:, b] + transverse * t[:, a] * t[:, b]
-        for a, b in ((0, 0), (0, 1), (1, 1))
-    ]
-    if not moduli.has_shear:
-        return np.column_stack(block)
-    cells = family.length / family.spacing
-    half = 0.5 * transverse * cells
-    return np.column_stack([*block, half * t[:, 0], half * t[:, 1], 0.5 * half * cells])
+    scales, arm = moduli.scales(family.spacing), 0.5 * family.length
+    here, there = (moduli.end_rows(scales, family.normal.T, end, arm) for end in (-1.0, 1.0))
+    weight = family.weight * family.cell_area * moduli.pair_length(family) / family.length**2
+    stiffness = weight * moduli.stiffness
+    # Products of rows first: a bond and its opposite then agree to the last bit.
+    own, coupling = (
+        np.einsum("an,abcn->nbc", stiffness, here[:, :, None] * end[:, None])
+        for end in (here, there)
+    )
+    return own, coupling
+
+
+def offset_blocks(family: Family, moduli: Moduli) -> Array:
+    """Entries of K_pp of all offsets, shape (family size, 6, 3 or 1).
+
+    Elasticity: A11, A12, A22, t̂1, t̂2, c, the first three only where no bond resists shear;
+    conduction: w k/|ξ|². K_pq has the same entries, [[−A, t̂], [−t̂ᵀ, c]].
+    """
+    own, _ = bond_blocks(family, moduli)
+    return np.column_stack([own[:, a, b] for a, b in entries(moduli.components)])

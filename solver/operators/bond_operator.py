@@ -17,8 +17,9 @@ from scipy.sparse.linalg import LinearOperator
 
 from ..arrays import Array, Mask
 from ..bonds import Bonds
-from ..material import ElasticModuli, Moduli
+from ..material import Moduli
 from . import kernels, segments
+from .blocks import entries as block_entries
 from .blocks import offset_blocks
 from .surface_stiffness import SurfaceStiffness, stiffness_of
 
@@ -32,7 +33,7 @@ class BondOperator(LinearOperator):
     Parameters
     ----------
     bonds : Bonds
-    moduli : ElasticModuli or ConductiveModuli
+    moduli : Moduli
     prescribed : ndarray of bool, shape (components, N)
         Prescribed unknowns. Particles with all of them prescribed are not unknowns; single
         prescribed components of the others are kept as identity rows.
@@ -40,8 +41,8 @@ class BondOperator(LinearOperator):
 
     def __init__(self, bonds: Bonds, moduli: Moduli, prescribed: Mask) -> None:
         self.bonds, self.moduli = bonds, moduli
-        self.blocks: Array = offset_blocks(bonds, moduli)
-        self.components = {6: 3, 3: 2, 1: 1}[self.blocks.shape[1]]
+        self.blocks: Array = offset_blocks(bonds.family, moduli)
+        self.components = moduli.components
         if prescribed.shape != (self.components, bonds.lattice.count):
             raise ValueError(f"prescribed must have shape {(self.components, bonds.lattice.count)}")
         #: Numbers of the active particles.
@@ -69,7 +70,7 @@ class BondOperator(LinearOperator):
         #: Stiffness of the bonds that end at the surface, if there are any.
         self.ended_stiffness: SurfaceStiffness | None = None
         if bonds.ended is not None:
-            self.ended_stiffness = stiffness_of(bonds.ended, bonds.family, moduli, self.components)
+            self.ended_stiffness = stiffness_of(bonds.ended, bonds.family, moduli)
             self._add_surface()
 
     def _add_surface(self) -> None:
@@ -226,10 +227,7 @@ class BondOperator(LinearOperator):
         preconditioner built on it takes as many iterations on any lattice; and the two have the
         same motions that strain no bond.
         """
-        if not isinstance(self.moduli, ElasticModuli):
-            return self
-        positive = ElasticModuli(np.abs(self.moduli.normal), np.abs(self.moduli.shear))
-        return self.with_moduli(positive)
+        return self.with_moduli(self.moduli.absolute())
 
     def surface_basis(self, basis: sparse.csr_array | None = None) -> sparse.csr_array:
         """Values of the surface's particles for each unknown, or each column of `basis`.
@@ -305,12 +303,8 @@ class BondOperator(LinearOperator):
         """Entries (entries, n) in the kernels' order as symmetric blocks (n, c, c)."""
         c = self.components
         blocks = np.empty((entries.shape[1], c, c))
-        if c == 1:
-            blocks[:, 0, 0] = entries[0]
-            return blocks
-        for k, (a, b) in enumerate([(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)]):
-            if b < c:
-                blocks[:, a, b] = blocks[:, b, a] = entries[k]
+        for values, (a, b) in zip(entries, block_entries(c), strict=True):
+            blocks[:, a, b] = blocks[:, b, a] = values
         return blocks
 
     @property

@@ -30,7 +30,7 @@ import numpy as np
 
 from ..arrays import Array, Indices
 from ..geometry import Outline
-from ..material import ConductiveModuli, Family, Moduli, effective_tensor, stretch_rows
+from ..material import Family, Moduli, effective_tensor
 
 _OPTIONS: Any = {"cache": True, "nogil": True}
 
@@ -83,20 +83,12 @@ def shares(family: Family, moduli: Moduli, along: Array) -> tuple[Array, Array]:
         E_τ = 1/(S)_ττ, Pa, or 1/(K⁻¹)_ττ, W/(m K).
     """
     half = family.size // 2
-    weight = (family.weight * family.cell_area)[:half]
-    tensor = effective_tensor(family, moduli)
-    if isinstance(moduli, ConductiveModuli):
-        gradient = along @ np.linalg.inv(tensor)
-        slope = gradient @ family.normal[:half].T
-        energy = weight * moduli.conductivity[:half] * slope**2
-        return energy / energy.sum(axis=1, keepdims=True), 1.0 / (gradient * along).sum(axis=1)
-    a, b = along.T
-    stress = np.column_stack([a * a, b * b, a * b])
-    strain = stress @ np.linalg.inv(tensor)
-    stretch, shear = stretch_rows(family.angle[:half])
-    energy = moduli.normal[:half] * (strain @ stretch) ** 2
-    energy += moduli.shear[:half] * (strain @ shear) ** 2
-    energy *= weight * family.length[:half]
+    weight = (family.weight * family.cell_area * moduli.pair_length(family))[:half]
+    stress = moduli.uniaxial(along)
+    strain = stress @ np.linalg.inv(effective_tensor(family, moduli))
+    # Each strain of each bond in that state, (strains, e, half).
+    found = np.einsum("ei,aio->aeo", strain, moduli.homogeneous(family.normal[:half].T))
+    energy = weight * np.einsum("ao,aeo->eo", moduli.stiffness[:, :half], found**2)
     return energy / energy.sum(axis=1, keepdims=True), 1.0 / (strain * stress).sum(axis=1)
 
 

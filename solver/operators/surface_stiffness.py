@@ -15,24 +15,21 @@ from scipy.sparse.linalg import SuperLU, splu
 from ..arrays import Array, Indices
 from ..bonds import EndedBonds
 from ..bonds.ended import SHORTEST
-from ..material import ConductiveModuli, Family, Moduli
+from ..material import Family, Moduli
+from .blocks import entries
 from .skin import thickness
 
 # Ratio of pivots below which the nodes' stiffness counts as singular.
 _SINGULAR = 1e-14
-# Order of the entries of diagonal blocks, as the operator has them.
-_ENTRIES = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
 # Particles whose columns are solved for at once.
 _CHUNK = 200
 
 
-def stiffness_of(
-    ended: EndedBonds, family: Family, moduli: Moduli, components: int
-) -> SurfaceStiffness:
+def stiffness_of(ended: EndedBonds, family: Family, moduli: Moduli) -> SurfaceStiffness:
     """Stiffness of some bonds; made once, however many other bonds break."""
     known = ended.__dict__.get("_known")
     if known is None or known[0] is not moduli:
-        known = moduli, SurfaceStiffness(ended, family, moduli, components)
+        known = moduli, SurfaceStiffness(ended, family, moduli)
         # The dataclass is frozen for everybody else.
         ended.__dict__["_known"] = known
     stiffness: SurfaceStiffness = known[1]
@@ -48,8 +45,7 @@ class SurfaceStiffness:
     ----------
     ended : EndedBonds
     family : Family
-    moduli : ElasticModuli or ConductiveModuli
-    components : int
+    moduli : Moduli
 
     Attributes
     ----------
@@ -59,8 +55,9 @@ class SurfaceStiffness:
         Nodes of the outline that they end between.
     """
 
-    def __init__(self, ended: EndedBonds, family: Family, moduli: Moduli, components: int) -> None:
-        self.ended, self.components = ended, components
+    def __init__(self, ended: EndedBonds, family: Family, moduli: Moduli) -> None:
+        self.ended, self.components = ended, moduli.components
+        components = self.components
         self.particles, here = np.unique(ended.particle, return_inverse=True)
         ends = ended.outline.edges[ended.edge]
         self.nodes = np.unique(ends)
@@ -68,7 +65,7 @@ class SurfaceStiffness:
         number = np.full(len(ended.outline.nodes), -1)
         number[self.nodes] = np.arange(count[1])
         length = ended.length
-        rule = _Strains(family, moduli, components, ended.offset, length)
+        rule = _Strains(family, moduli, ended.offset, length)
         whole = family.length[ended.offset]
         particle = rule.rows(-1.0, 0.5 * whole)
         strain_p = _place(particle, [(here, np.ones_like(length))], count[0])
@@ -84,8 +81,7 @@ class SurfaceStiffness:
                     (rule.weight * particle[:, a] * particle[:, b]).sum(axis=0),
                     minlength=count[0],
                 )
-                for a, b in _ENTRIES
-                if b < components
+                for a, b in entries(components)
             ]
         )
         #: K_sp, shape (components·s, components·p).
@@ -95,7 +91,7 @@ class SurfaceStiffness:
         matrix = sparse.csc_array(strain_s.T @ scaled)
         chords = ended.chords
         if chords is not None and len(chords.offset):
-            rule = _Strains(family, moduli, components, chords.offset, chords.length)
+            rule = _Strains(family, moduli, chords.offset, chords.length)
             strain = sparse.csr_array((rule.weight.size, components * count[1]))
             for end, sign in enumerate((-1.0, 1.0)):
                 ends = number[ended.outline.edges[chords.edge[:, end]]]
@@ -179,7 +175,7 @@ class SurfaceStiffness:
         found = float((others * (self.transposed @ nodal.ravel()).reshape(c, -1)).sum())
         found += float((other_nodal * (self.coupling @ values.ravel()).reshape(c, -1)).sum())
         found += float((other_nodal * (self.matrix @ nodal.ravel()).reshape(c, -1)).sum())
-        for entry, (a, b) in zip(self.own, _ENTRIES, strict=False):
+        for entry, (a, b) in zip(self.own, entries(c), strict=True):
             found += float((entry * others[a] * values[b]).sum())
             if a != b:
                 found += float((entry * others[b] * values[a]).sum())
@@ -266,47 +262,33 @@ class SurfaceStiffness:
 
 
 class _Strains:
-    """s and γ (or g) of bonds of given offsets and lengths, as rows of values at their ends."""
+    """The strains of bonds of given offsets and lengths, as rows of values at their ends."""
 
-    def __init__(
-        self, family: Family, moduli: Moduli, components: int, offset: Indices, length: Array
-    ) -> None:
-        self.normal, self.tangent = family.normal[offset].T, family.tangent[offset].T
+    def __init__(self, family: Family, moduli: Moduli, offset: Indices, length: Array) -> None:
+        self.moduli, self.normal = moduli, family.normal[offset].T
+        self.scales = moduli.scales(family.spacing)
         # A bond without length would be a rigid link. Below a share of the spacing its stiffness
         # grows no more; its geometry stays, so that rigid motions still strain nothing.
-        length = np.maximum(length, SHORTEST * family.spacing)
-        self.length, self.spacing, self.components = length, family.spacing, components
-        weight = family.weight[offset] * family.cell_area * length
-        if isinstance(moduli, ConductiveModuli):
-            moduli_of = moduli.conductivity[offset] / family.length[offset]
-            #: Twice the energy for a strain of one, shape (strains, k).
-            self.weight: Array = (weight * moduli_of)[None]
-        elif components == 2:
-            self.weight = (weight * moduli.normal[offset])[None]
-        else:
-            self.weight = weight * np.array([moduli.normal[offset], moduli.shear[offset]])
+        self.length = np.maximum(length, SHORTEST * family.spacing)
+        # The energy is that of the bond's part within the body.
+        share = self.length / family.length[offset]
+        weight = family.weight[offset] * family.cell_area * share
+        #: Twice the energy for a strain of one, shape (strains, k).
+        self.weight: Array = (
+            weight * moduli.pair_length(family)[offset] * moduli.stiffness[:, offset]
+        )
 
-    def rows(self, sign: float, arm: Array) -> Array:
+    def rows(self, end: float, arm: Array) -> Array:
         """The share of one end, shape (strains, components, k).
 
         Parameters
         ----------
-        sign : float
+        end : float
             −1 where the bond starts, 1 where it ends.
         arm : ndarray, shape (k,), m
             What the rotation there contributes to −ℓ γ.
         """
-        slope = sign / self.length
-        if self.components == 1:
-            return np.asarray(slope[None, None])
-        if self.components == 2:
-            return np.asarray((slope * self.normal)[None])
-        zero = np.zeros_like(slope)
-        # Rotations are scaled by the spacing.
-        turn = -arm / (self.spacing * self.length)
-        return np.array(
-            [[*(slope * self.normal), zero], [*(slope * self.tangent), turn]], dtype=np.float64
-        )
+        return self.moduli.end_rows(self.scales, self.normal, end, arm) / self.length
 
 
 def _between(nodes: Indices, position: Array) -> list[tuple[Indices, Array]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array, Mask
 from ..errors import SceneError
 from ..geometry import Lattice, Outline, Point, Quadrature, Where, select
+from ..material.physics import Physics
 
 Value = float | ArrayLike | Callable[[Array, Array], Any]
 
@@ -81,7 +82,7 @@ class Support:
     @property
     def given(self) -> set[str]:
         """Names of the values that are given."""
-        names = ("displacement", "u1", "u2", "rotation", "temperature")
+        names = [item.name for item in fields(self) if item.name != "select"]
         return {name for name in names if getattr(self, name) is not None}
 
     @classmethod
@@ -105,22 +106,25 @@ class Support:
         """Particles in a region, or those for which ``where(x, y)`` is true."""
         return cls(lambda lattice: select(lattice, where), **values)
 
-    def columns(self, elastic: bool) -> list[tuple[int, Value, int, int]]:
-        """(unknown, value, component of it, components it has) of everything prescribed."""
-        wrong = {"temperature"} if elastic else {"displacement", "u1", "u2", "rotation"}
-        if self.given & wrong:
-            physics = "an elastic" if elastic else "a conductive"
+    def columns(self, physics: Physics) -> list[tuple[int, Value, int, int]]:
+        """(unknown, value, component of it, components it has) of everything prescribed.
+
+        Raises
+        ------
+        SceneError
+            If something is prescribed that the physics does not know.
+        """
+        known = physics.supports
+        if wrong := self.given - set(known):
             raise SceneError(
-                f"{physics} scene has no {', '.join(sorted(self.given & wrong))} to prescribe"
+                f"{physics.adjective} scene has no {', '.join(sorted(wrong))} to prescribe"
             )
-        found: list[tuple[int, Value, int, int]] = []
-        if self.displacement is not None:
-            found += [(0, self.displacement, 0, 2), (1, self.displacement, 1, 2)]
-        for unknown, value in ((0, self.u1), (1, self.u2), (2, self.rotation)):
+        found = []
+        for name in known:
+            value = getattr(self, name)
             if value is not None:
-                found.append((unknown, value, 0, 1))
-        if self.temperature is not None:
-            found.append((0, self.temperature, 0, 1))
+                width = len(known[name])
+                found += [(unknown, value, k, width) for k, unknown in enumerate(known[name])]
         return found
 
 

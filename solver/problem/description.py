@@ -19,12 +19,12 @@ from ..material import (
     AngularLaw,
     AreaRule,
     Calibration,
-    ElasticTensor,
     Family,
     Influence,
     Material,
 )
 from ..material.influence import influence
+from ..material.physics import Physics
 from .conditions import Load, Support
 
 
@@ -102,16 +102,14 @@ class Description:
             value = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, Real):
                 raise SceneError(f"{name} must be a number, not {value!r}")
-        wanted = {"force", "couple", "traction"} if self.elastic else {"source", "inflow"}
         for load in self.loads:
-            if load.kind not in wanted:
-                body = "an elastic body" if self.elastic else "a conductive body"
-                raise SceneError(f"a {load.kind} does not act on {body}")
+            if load.kind not in self.physics.loads:
+                raise SceneError(f"a {load.kind} does not act on {self.physics.adjective} body")
 
     @property
-    def elastic(self) -> bool:
-        """Whether the physics is elasticity (else conduction)."""
-        return isinstance(self.material, ElasticTensor)
+    def physics(self) -> Physics:
+        """What the scene is about, as its material says."""
+        return self.material.physics
 
     def family(self) -> Family:
         """The family of a bulk particle."""

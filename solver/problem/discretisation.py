@@ -60,11 +60,8 @@ class Discretisation:
         moduli = calibrated(family, scene.material, scene.calibration, scene.law)
         stability = require_admissible(family, moduli)
         lattice = Lattice(scene.region, scene.spacing, family.reach)
-        components = 1
-        if scene.elastic:
-            components = 2 if stability.kind == "central" else 3
-        prescribed, values = _supports(scene, lattice, components)
-        load = _loads(scene, lattice, components)
+        prescribed, values = _supports(scene, lattice, moduli)
+        load = _loads(scene, lattice, moduli)
         sharp_tips = sharp_tips and scene.broken is None
         edge_loads = _edge_loads(scene, lattice, sharp_tips)
         broken = scene.broken(lattice, family) if scene.broken else None
@@ -77,7 +74,6 @@ class Discretisation:
                 bonds,
                 operator,
                 prescribed,
-                scene.elastic,
                 broken is not None,
                 stability.kind != "indefinite",
             )
@@ -147,44 +143,40 @@ class Discretisation:
         return values
 
 
-def _supports(scene: Description, lattice: Lattice, components: int) -> tuple[Mask, Array]:
-    prescribed = np.zeros((components, lattice.count), dtype=bool)
-    values = np.zeros((components, lattice.count))
+def _supports(scene: Description, lattice: Lattice, moduli: Moduli) -> tuple[Mask, Array]:
+    prescribed = np.zeros((moduli.components, lattice.count), dtype=bool)
+    values = np.zeros((moduli.components, lattice.count))
+    scales = moduli.scales(scene.spacing)
     for support in scene.supports:
-        columns = support.columns(scene.elastic)
+        columns = support.columns(scene.physics)
         selected = support.select(lattice)
         if not selected.any():
             raise SceneError("a support holds no particle: its layer or region is empty")
         evaluated: dict[tuple[int, int], Array] = {}
         for unknown, value, component, width in columns:
-            if unknown >= components:
-                # Without shear stiffness rotations are no unknowns; prescribing them is moot.
+            if unknown >= moduli.components:
+                # No bond resists it, it is no unknown; prescribing it is moot.
                 continue
             key = id(value), width
             if key not in evaluated:
                 what = "a prescribed value"
                 evaluated[key] = evaluate(value, lattice.points[selected], width, what)
-            scale = scene.spacing if unknown == 2 else 1.0
             prescribed[unknown, selected] = True
-            values[unknown, selected] = scale * evaluated[key][:, component]
+            values[unknown, selected] = scales[unknown] * evaluated[key][:, component]
     return prescribed, values
 
 
-def _loads(scene: Description, lattice: Lattice, components: int) -> Array:
-    load = np.zeros((components, lattice.count))
+def _loads(scene: Description, lattice: Lattice, moduli: Moduli) -> Array:
+    load = np.zeros((moduli.components, lattice.count))
+    scales, physics = moduli.scales(scene.spacing), scene.physics
     for item in scene.loads:
         if item.density is None:
             continue
         mask, density = item.density(lattice)
-        if item.kind == "couple":
-            if components < 3:
-                raise SceneError(
-                    "a body couple needs bonds with shear stiffness: this solid has none "
-                    "(C66 = C12), its particles do not resist rotation"
-                )
-            load[2, mask] += density[:, 0] / scene.spacing
-        else:
-            load[: density.shape[1], mask] += density.T
+        for column, unknown in enumerate(physics.loads[item.kind]):
+            if unknown >= moduli.components:
+                raise SceneError(f"a body {item.kind} {physics.missing[unknown]}")
+            load[unknown, mask] += density[:, column] / scales[unknown]
     return load
 
 

@@ -91,7 +91,6 @@ def find(
     bonds: Bonds,
     operator: BondOperator,
     prescribed: Mask,
-    elastic: bool,
     damaged: bool,
     positive: bool,
 ) -> tuple[NDArray[np.int64], str]:
@@ -101,14 +100,13 @@ def find(
     ----------
     bonds, operator, prescribed
         See `solver.scene.Discretisation`.
-    elastic : bool
     damaged : bool
         Whether single bonds are broken: only then are hinges looked for (cracks, too, may leave
         slack particles).
     positive : bool
         Whether the operator is (taken to be) positive; otherwise its companion is searched.
     """
-    loose = unheld(bonds, prescribed, elastic)
+    loose = unheld(bonds, prescribed, operator.moduli.physics)
     if loose:
         members = np.logical_or.reduce([part for part, _ in loose])
         return np.nonzero(members & ~prescribed.all(axis=0))[0], "; ".join(

@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ..arrays import Array, Mask
 from ..bonds import Bonds
+from ..material.physics import Physics
 
 # A motion counts as blocked if its square on the prescribed unknowns exceeds this share of the
 # largest one's.
@@ -56,14 +57,14 @@ def parts(bonds: Bonds) -> tuple[int, NDArray[np.int32]]:
     return count, labels
 
 
-def unheld(bonds: Bonds, prescribed: Mask, elastic: bool) -> list[tuple[Mask, str]]:
-    """Parts that can move rigidly (or float at any temperature).
+def unheld(bonds: Bonds, prescribed: Mask, physics: Physics) -> list[tuple[Mask, str]]:
+    """Parts that can move without straining a bond: rigidly, or floating at any level.
 
     Parameters
     ----------
     bonds : Bonds
     prescribed : ndarray of bool, shape (components, N)
-    elastic : bool
+    physics : Physics
 
     Returns
     -------
@@ -76,45 +77,29 @@ def unheld(bonds: Bonds, prescribed: Mask, elastic: bool) -> list[tuple[Mask, st
     found: list[tuple[Mask, str]] = []
     for part in np.unique(labels[active]):
         members = labels == part
-        held = prescribed[:, members]
         where = points[members].mean(axis=0)
         place = "the body" if count == 1 else f"the part about ({where[0]:.4g}, {where[1]:.4g})"
-        size = f"{int(members.sum())} particles"
-        if not elastic:
-            if not held.any():
-                found.append(
-                    (
-                        members,
-                        f"no temperature is prescribed on {place} ({size}): its level is "
-                        f"undetermined",
-                    )
-                )
-            continue
-        loose = _free_motions(points[members] - where, held)
-        if loose:
-            found.append(
-                (
-                    members,
-                    f"a rigid motion of {place} ({size}) is left free ({loose}): statics "
-                    f"has no unique solution",
-                )
-            )
+        motions = free_motions(points[members] - where, prescribed[:, members], physics)
+        if motions:
+            size = f"{place} ({int(members.sum())} particles)"
+            found.append((members, physics.unheld.format(place=size, motions=motions)))
     return found
 
 
-def _free_motions(positions: Array, held: Mask) -> str:
-    """Names of the rigid motions that the prescribed unknowns `held` (components, n) allow."""
+def free_motions(positions: Array, held: Mask, physics: Physics) -> str:
+    """Names of the motions without strain that the prescribed unknowns allow; empty if none.
+
+    Parameters
+    ----------
+    positions : ndarray, shape (n, 2)
+    held : ndarray of bool, shape (components, n)
+    physics : Physics
+    """
     size = np.abs(positions).max(initial=0.0) or 1.0
-    x, y = (positions / size).T
-    motions = np.zeros((3, *held.shape))
-    motions[0, 0] = motions[1, 1] = 1.0
-    motions[2, 0], motions[2, 1] = -y, x
-    if held.shape[0] == 3:
-        motions[2, 2] = 1.0
-    motions /= np.linalg.norm(motions.reshape(3, -1), axis=1)[:, None, None]
+    motions = physics.motions(positions / size)[:, : len(held)]
+    motions /= np.linalg.norm(motions.reshape(len(motions), -1), axis=1)[:, None, None]
     seen = motions[:, held]
     squares, modes = np.linalg.eigh(np.einsum("ai,bi->ab", seen, seen))
     free = squares <= _RANK * max(squares.max(), 1e-300)
     loose = np.abs(modes[:, free]).max(axis=1, initial=0.0)
-    names = ("translation along 1", "translation along 2", "rotation")
-    return ", ".join(n for n, s in zip(names, loose, strict=True) if s > 1e-3)
+    return ", ".join(n for n, s in zip(physics.motion_names, loose, strict=True) if s > 1e-3)

@@ -296,9 +296,9 @@ def test_wrong_physics_and_unknown_rules():
     scene = conductor(DISC)
     heat = imposed(scene, np.zeros(scene.discretise().lattice.count))
     for ask in (recovery.stress, recovery.macrorotation):
-        with pytest.raises(TypeError, match="elastic solutions only"):
+        with pytest.raises(TypeError, match="of elasticity only, not of heat"):
             ask(heat)
-    with pytest.raises(TypeError, match="conductive solutions only"):
+    with pytest.raises(TypeError, match="of heat conduction only"):
         recovery.flux(elastic)
     with pytest.raises(ValueError, match="unknown stress rule 'virial'"):
         recovery.stress(elastic, "virial")

@@ -133,13 +133,13 @@ def energy_defect(solution: Solution) -> float:
         # Conduction: an unordered pair stores ½ k g² α Δv², g the jump over the length.
         density = 0.5 * family.weight[o] * family.cell_area**2
         if len(fields) == 1:
-            total += density * moduli.conductivity[o] * (jump[0] ** 2).sum()  # type: ignore[union-attr]
+            total += density * moduli.conductivity[o] * (jump[0] ** 2).sum()  # type: ignore[attr-defined]
             continue
         stretch = family.normal[o] @ jump[:2]
         shear = family.tangent[o] @ jump[:2]
         if len(fields) == 3:
             shear = shear - 0.5 * (fields[2, here] + fields[2, there]) / family.spacing
-        bond = moduli.normal[o] * stretch**2 + moduli.shear[o] * shear**2  # type: ignore[union-attr]
+        bond = moduli.normal[o] * stretch**2 + moduli.shear[o] * shear**2  # type: ignore[attr-defined]
         total += density * family.length[o] * bond.sum()
     work = float((d.load * np.nan_to_num(fields)).sum()) * family.cell_area
     return abs(2 * total - work) / abs(work)

@@ -86,17 +86,12 @@ def extreme_eigenvalues(family: Family, moduli: Moduli, count: int = 24) -> tupl
     Rotations count as θ Δx. At k = 0 the displacements' eigenvalues vanish: that corner is left
     out, so that the smallest one of a stable solid is that of its longest wave on the grid.
     """
-    from solver.material import ConductiveModuli, brillouin_zone
+    from solver.material import brillouin_zone
     from solver.material.symbol import symbol
 
-    values = symbol(family, moduli, brillouin_zone(count))
-    if isinstance(moduli, ConductiveModuli):
-        return float(values.min()), float(values.max())
-    scale = np.array([1.0, 1.0, 1.0 / family.spacing])
-    eigenvalues = np.linalg.eigvalsh(values * np.outer(scale, scale))
-    if not moduli.has_shear:  # rotations are no unknowns: one eigenvalue of three is zero
-        size = np.abs(eigenvalues).max()
-        eigenvalues = eigenvalues[np.abs(eigenvalues) > 1e-12 * size]
+    scale = 1.0 / moduli.scales(family.spacing)
+    values = symbol(family, moduli, brillouin_zone(count)) * np.outer(scale, scale)
+    eigenvalues = np.linalg.eigvalsh(values)
     return float(eigenvalues.min()), float(eigenvalues.max())
 
 

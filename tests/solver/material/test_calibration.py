@@ -398,3 +398,11 @@ def test_the_disc_conductor_has_positive_moduli_at_two_cells():
     # [[5, 2], [2, 1]] = (1, 0)(1, 0)ᵀ + (2, 1)(2, 1)ᵀ: two bonds of the family make it.
     moduli = calibrate(Family(2), ConductivityTensor(DISC), "positive")
     assert relative(effective_tensor(Family(2), moduli), DISC) < 1e-12
+
+
+def test_default_laws():
+    family = Family(3)
+    one, other = (calibrate(family, ElasticTensor(FIG_7), law=law) for law in (None, TwoHarmonic()))
+    np.testing.assert_array_equal(one.stiffness, other.stiffness)
+    one, other = (calibrate(family, ConductivityTensor(DISC), law=law) for law in (None, Cosine()))
+    np.testing.assert_array_equal(one.stiffness, other.stiffness)

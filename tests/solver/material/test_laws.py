@@ -14,7 +14,6 @@ from solver import (
     TwoHarmonic,
     UniformShear,
 )
-from solver.material.laws import default_law
 from tests.solver.bodies import DISC, FIG_7, conductivities, exact, rotate_4, voigts
 
 PSI = np.linspace(-3.0, 3.0, 13)
@@ -119,8 +118,3 @@ def test_laws_of_elasticity_are_refused_in_conduction():
     for law in (Fourfold(2), UniformShear()):
         with pytest.raises(CalibrationError, match="Cosine"):
             law.conductive(PSI, ConductivityTensor(DISC), extended=False)
-
-
-def test_defaults():
-    assert default_law(ElasticTensor(FIG_7)) == TwoHarmonic()
-    assert default_law(ConductivityTensor(DISC)) == Cosine()
