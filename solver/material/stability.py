@@ -10,8 +10,8 @@ from scipy.optimize import minimize
 
 from ..arrays import Array
 from .family import Family
-from .moduli import Moduli, effective_tensor
-from .symbol import brillouin_zone, margins, symbol
+from .moduli import Moduli
+from .symbol import BulkSymbol, brillouin_zone, symbol
 
 Kind = Literal["positive", "central", "indefinite", "inadmissible"]
 
@@ -56,7 +56,8 @@ def assess(family: Family, moduli: Moduli, count: int = 32) -> Stability:
     -------
     Stability
     """
-    spectrum = np.linalg.eigvalsh(effective_tensor(family, moduli))
+    bulk = BulkSymbol(family, moduli)
+    spectrum = np.linalg.eigvalsh(bulk.tensor)
     if not spectrum[0] > _SINGULAR * np.abs(spectrum).max():
         # Longest waves: a homogeneous strain (or gradient) would release energy.
         worst_share = float(spectrum[0] / np.abs(spectrum).max())
@@ -64,7 +65,7 @@ def assess(family: Family, moduli: Moduli, count: int = 32) -> Stability:
     k = brillouin_zone(count)
     low = high = 0.0
     if moduli.turns:
-        rotation = symbol(family, moduli, k)[:, -1, -1].real
+        rotation = bulk(k)[:, -1, -1].real
         # Its largest possible value: that of bonds of the same size and one sign, k = 0.
         scale = float(symbol(family, moduli.absolute(), np.zeros(2))[-1, -1].real)
         low, high = float(rotation.min()) / scale, float(rotation.max()) / scale
@@ -72,7 +73,7 @@ def assess(family: Family, moduli: Moduli, count: int = 32) -> Stability:
             # H_θθ changes sign: the condensed symbol has a pole somewhere.
             pole = k[np.argmin(np.abs(rotation))]
             return Stability("inadmissible", -np.inf, (float(pole[0]), float(pole[1])), (low, high))
-    values = margins(family, moduli, k)
+    values = bulk.margins(k)
     worst = k[np.argmin(values)]
     margin = float(values.min())
     if margin > _SINGULAR:
@@ -81,7 +82,7 @@ def assess(family: Family, moduli: Moduli, count: int = 32) -> Stability:
             # The margin compares with the solid along k itself: a search that strays out of the
             # zone would compare a long wave with the solid along a reciprocal lattice vector.
             q = (q + np.pi) % (2 * np.pi) - np.pi
-            return float(margins(family, moduli, q)) if q @ q > 1e-6 else 1e300
+            return float(bulk.margins(q)) if q @ q > 1e-6 else 1e300
 
         found = minimize(
             in_zone,

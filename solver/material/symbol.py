@@ -21,17 +21,75 @@ from .family import Family
 from .moduli import Moduli, effective_tensor, wave_strains
 
 
-def _half(family: Family) -> tuple[Array, Array]:
-    """Offsets in cells and α Λ Δv of half the bonds, twice: sums over them count both halves."""
-    half = family.size // 2
-    return family.offsets[:half].astype(float), 2 * family.weight[:half] * family.cell_area
+class BulkSymbol:
+    """Symbol of a bond model: what does not depend on the wave is found once.
+
+    With the phases ∓φ/2 at the two ends of a bond the share of every unknown in a strain is
+    b e^{iφ/2} + a e^{−iφ/2} = (b + a) cos φ/2 + i (b − a) sin φ/2, a and b the rows of its ends:
+    no cancellation for long waves.
+
+    Parameters
+    ----------
+    family : Family
+    moduli : Moduli
+    """
+
+    def __init__(self, family: Family, moduli: Moduli) -> None:
+        self.family, self.moduli = family, moduli
+        half, c = family.size // 2, moduli.components
+        length = family.length[:half]
+        self._offsets = family.offsets[:half].astype(float)
+        # Sums run over half the bonds, each counted twice.
+        weight = 2 * (family.weight * family.cell_area * moduli.pair_length(family))[:half]
+        normal, arm = family.normal[:half].T, 0.5 * length
+        first, last = (moduli.end_rows(np.ones(c), normal, end, arm) for end in (-1.0, 1.0))
+        even, odd = first + last, last - first
+        # Energy ½ per pair, and a pair has two ends.
+        stiffness = 0.5 * weight * moduli.stiffness[:, :half] / length**2
+
+        def products(one: Array, other: Array) -> Array:
+            return np.einsum("an,abn,acn->nbc", stiffness, one, other).reshape(half, c * c)
+
+        self._even, self._odd = products(even, even), products(odd, odd)
+        self._mixed = products(even, odd) - products(odd, even)
+        #: The tensor of long waves.
+        self.tensor = effective_tensor(family, moduli)
+        # Nonlocal Laplacian with the same weights and unit moduli: |k|² for long waves.
+        self._laplacian = weight * (family.spacing / length) ** 2 / (0.25 * weight.sum())
+
+    def __call__(self, k: Array) -> Array:
+        """As `symbol`."""
+        c = self.moduli.components
+        phase = 0.5 * np.asarray(k, dtype=np.float64) @ self._offsets.T
+        sine, cosine = np.sin(phase), np.cos(phase)
+        real = sine**2 @ self._odd + cosine**2 @ self._even
+        imaginary = (sine * cosine) @ self._mixed
+        return (real + 1j * imaginary).reshape(*phase.shape[:-1], c, c)
+
+    def condensed(self, k: Array) -> Array:
+        """As `condensed_symbol`."""
+        full = self(k)
+        if not self.moduli.turns:
+            return full.real
+        block = full[..., :-1, :-1].real
+        c, rotation = full[..., :-1, -1].imag, full[..., -1, -1].real
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return block - c[..., :, None] * c[..., None, :] / rotation[..., None, None]
+
+    def margins(self, k: Array) -> Array:
+        """Relative smallest eigenvalue of the condensed symbol at wave vectors `k` ≠ 0, (..., 2).
+
+        Relative to the local solid's and to the nonlocal Laplacian.
+        """
+        k = np.asarray(k, dtype=np.float64)
+        laplacian = 2 * np.sin(0.5 * k @ self._offsets.T) ** 2 @ self._laplacian
+        rows = self.moduli.wave_rows(k / np.linalg.norm(k, axis=-1, keepdims=True))
+        local = _smallest(rows.swapaxes(-1, -2) @ self.tensor @ rows)
+        return _smallest(self.condensed(k)) * self.family.spacing**2 / (laplacian * local)
 
 
 def symbol(family: Family, moduli: Moduli, k: Array) -> Array:
     """Hermitian symbol of one bulk row at wave vectors `k`.
-
-    With the phases ∓φ/2 at the two ends of a bond the share of every unknown in a strain is
-    (b e^{iφ/2} + a e^{−iφ/2}), a and b the rows of its ends: no cancellation for long waves.
 
     Parameters
     ----------
@@ -45,20 +103,7 @@ def symbol(family: Family, moduli: Moduli, k: Array) -> Array:
     ndarray, shape (..., components, components), complex
         Unknowns u1, u2, θ (rad), or T.
     """
-    offsets, weight = _half(family)
-    half = len(weight)
-    length = family.length[:half]
-    normal, arm = family.normal[:half].T, 0.5 * length
-    phase = 0.5 * np.asarray(k, dtype=np.float64) @ offsets.T
-    plain = np.ones(moduli.components)
-    first, last = (moduli.end_rows(plain, normal, end, arm) for end in (-1.0, 1.0))
-    even, odd = 0.5 * (first + last), 0.5 * (last - first)
-    rows = 2 * (
-        np.cos(phase)[..., None, None, :] * even + 1j * np.sin(phase)[..., None, None, :] * odd
-    )
-    stiffness = weight * moduli.pair_length(family)[:half] * moduli.stiffness[:, :half] / length**2
-    # Energy ½ per pair, and a pair has two ends.
-    return 0.5 * np.einsum("an,...abn,...acn->...bc", stiffness, rows.conj(), rows, optimize=True)
+    return BulkSymbol(family, moduli)(k)
 
 
 def condensed_symbol(family: Family, moduli: Moduli, k: Array) -> Array:
@@ -67,40 +112,23 @@ def condensed_symbol(family: Family, moduli: Moduli, k: Array) -> Array:
     The coupling is purely imaginary, H_uθ = i c, so that the condensed block is
     H_uu − c cᵀ / H_θθ.
     """
-    full = symbol(family, moduli, k)
-    if not moduli.turns:
-        return full.real
-    block = full[..., :-1, :-1].real
-    c, rotation = full[..., :-1, -1].imag, full[..., -1, -1].real
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return block - c[..., :, None] * c[..., None, :] / rotation[..., None, None]
+    return BulkSymbol(family, moduli).condensed(k)
+
+
+def margins(family: Family, moduli: Moduli, k: Array) -> Array:
+    """`BulkSymbol.margins` of a bond model, shape (...,)."""
+    return BulkSymbol(family, moduli).margins(k)
 
 
 def _smallest(block: Array) -> Array:
     """Smallest eigenvalue of symmetric 1×1 or 2×2 blocks; −inf where they are not finite."""
-    a, b, c = block[..., 0, 0], block[..., -1, -1], block[..., 0, -1]
     if block.shape[-1] == 1:
-        c = np.zeros_like(c)
-    with np.errstate(invalid="ignore"):
-        value = 0.5 * (a + b) - np.hypot(0.5 * (a - b), c)
+        value = block[..., 0, 0]
+    else:
+        a, b, c = block[..., 0, 0], block[..., 1, 1], block[..., 0, 1]
+        with np.errstate(invalid="ignore"):
+            value = 0.5 * (a + b) - np.hypot(0.5 * (a - b), c)
     return np.where(np.isfinite(value), value, -np.inf)
-
-
-def margins(family: Family, moduli: Moduli, k: Array) -> Array:
-    """Relative smallest eigenvalue of the condensed symbol at wave vectors `k` ≠ 0, (..., 2)."""
-    k = np.asarray(k, dtype=np.float64)
-    half = family.size // 2
-    offsets, weight = _half(family)
-    # Nonlocal Laplacian with the same weights and unit moduli: |k|² for long waves.
-    wave = weight * moduli.pair_length(family)[:half]
-    lag = 2 * np.sin(0.5 * k @ offsets.T) ** 2
-    laplacian = lag @ (wave * (family.spacing / family.length[:half]) ** 2) / (0.25 * wave.sum())
-    direction = k / np.linalg.norm(k, axis=-1, keepdims=True)
-    rows = moduli.wave_rows(direction)
-    tensor = effective_tensor(family, moduli)
-    local = _smallest(np.einsum("...ai,ab,...bj->...ij", rows, tensor, rows))
-    value = _smallest(condensed_symbol(family, moduli, k))
-    return value * family.spacing**2 / (laplacian * local)
 
 
 def acoustic_tensor(voigt: Array, direction: Array) -> Array:
