@@ -165,22 +165,18 @@ def solve(
     """Solve a scene file, or let its cracks grow, and write its fields as .vtu and .npz."""
     from rich.console import Console
 
-    from cmverify.exchange import fracture_table, scene_file
-    from cmverify.exchange.export import write_arrays
+    from cmverify.exchange import scene_file
+    from solver.result import Result
 
     base = out or scene.with_suffix("")
-    paths: tuple[Path, ...]
     try:
         described, options = scene_file.read(scene)
         plan = scene_file.read_fracture(scene)
         if plan is None:
-            solution = described.solve(**options)
-            said = solution.statistics.as_dict()
-            paths = write_arrays(solution.points, scene_file.fields(solution), base)
+            result: Result = described.solve(**options)
         else:
-            run = plan.run(described)
-            said = fracture_table.summary(run)
-            paths = fracture_table.write(run, scene_file.fields(run.solution), base)
+            result = plan.run(described)
+        said, paths = result.summary(), result.write(base)
     except (ValueError, RuntimeError) as error:
         _refuse(str(error))
     console = Console()

@@ -19,7 +19,7 @@ from .arrays import Array
 from .material import Family, Moduli
 from .material.physics import ELASTICITY, HEAT, Physics
 from .material.strains import directions, elongations
-from .solution import Solution
+from .state import State
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class _Pair:
     strains: Array
 
 
-def _pairs(solution: Solution) -> Iterator[_Pair]:
+def _pairs(solution: State) -> Iterator[_Pair]:
     """The bonds of each offset: differences (components, N) and strains (strains, N)."""
     body = solution.discretisation
     lattice, family, bonds, moduli = body.lattice, body.family, body.bonds, body.moduli
@@ -84,7 +84,7 @@ class _Ends:
             into += np.bincount(self.particle, what, minlength=len(into))
 
 
-def _ends(solution: Solution) -> _Ends | None:
+def _ends(solution: State) -> _Ends | None:
     """The bonds that end at the surface, if the body has any."""
     body = solution.discretisation
     ended, surface, family = body.bonds.ended, body.operator.ended_stiffness, body.family
@@ -99,13 +99,13 @@ def _ends(solution: Solution) -> _Ends | None:
     return _Ends(ended.particle, ended.offset, weight, ended.length, difference, strains)
 
 
-def _aside(solution: Solution, result: Array) -> Array:
+def _aside(solution: State, result: Array) -> Array:
     """`result` (N, ...) with NaN at the particles that were set aside."""
     result[np.isnan(solution.unknowns).any(axis=0)] = np.nan
     return result
 
 
-def _need(solution: Solution, physics: Physics, what: str) -> None:
+def _need(solution: State, physics: Physics, what: str) -> None:
     if solution.physics is not physics:
         raise TypeError(
             f"{what} is recovered from solutions of {physics.name} only, not of "
@@ -125,12 +125,12 @@ def _ended_force(ends: _Ends, moduli: Moduli, family: Family) -> Array:
     return np.einsum("ak,aik,ak->ik", moduli.stiffness[:, ends.offset], along, ends.strains)
 
 
-def stress(solution: Solution, rule: Literal["plane", "family"] = "plane") -> Array:
+def stress(solution: State, rule: Literal["plane", "family"] = "plane") -> Array:
     """Stress at the particles.
 
     Parameters
     ----------
-    solution : Solution
+    solution : Solution, or the State of any analysis
         Of an elastic scene.
     rule : {"plane", "family"}
         ``plane``: Saint-Venant and Cauchy's definition (Eq. 83), force per area through the
@@ -203,12 +203,12 @@ def _crossings(offset: NDArray[np.int64], axis: int) -> Iterator[tuple[tuple[int
             yield start, weight
 
 
-def flux(solution: Solution, rule: Literal["consistent", "hotter"] = "consistent") -> Array:
+def flux(solution: State, rule: Literal["consistent", "hotter"] = "consistent") -> Array:
     """Heat flux (or current density) at the particles.
 
     Parameters
     ----------
-    solution : Solution
+    solution : Solution, or the State of any analysis
         Of a conductive scene.
     rule : {"consistent", "hotter"}
         ``consistent``: −½ Σ k g n α Δv over the whole family, the half sum that a homogeneous
@@ -241,7 +241,7 @@ def _share(rule: str, gradient: Array) -> Array:
     return np.where(gradient > 0, 1.0, 0.0) if rule == "hotter" else np.full_like(gradient, 0.5)
 
 
-def strain_energy_density(solution: Solution) -> Array:
+def strain_energy_density(solution: State) -> Array:
     """Macroelastic energy density W of each particle (Eq. 11), shape (N,), J/m³.
 
     Each bond gives half its energy to either end; one that ends at the surface as much as if it
@@ -261,14 +261,14 @@ def strain_energy_density(solution: Solution) -> Array:
     return _aside(solution, result)
 
 
-def damage(solution: Solution) -> Array:
+def damage(solution: State) -> Array:
     """Share of each particle's family that is cut or broken (Eq. 105), shape (N,); see
     `solver.bonds.damage`. NaN at parts that were set aside.
     """
     return _aside(solution, bond_room.damage(solution.discretisation.bonds))
 
 
-def displacement_gradient(solution: Solution) -> Array:
+def displacement_gradient(solution: State) -> Array:
     """∂u_i/∂x_j by weighted least squares over the bonds that exist, shape (N, 2, 2).
 
     Exact for linear fields in every family that is not degenerate.
@@ -292,13 +292,13 @@ def displacement_gradient(solution: Solution) -> Array:
     return _aside(solution, slope @ np.linalg.pinv(moment))
 
 
-def macrorotation(solution: Solution) -> Array:
+def macrorotation(solution: State) -> Array:
     """½ (∂u2/∂x1 − ∂u1/∂x2), shape (N,), rad: what θ tends to as δ → 0 (Eq. 85)."""
     gradient = displacement_gradient(solution)
     return 0.5 * (gradient[:, 1, 0] - gradient[:, 0, 1])
 
 
-def fields(solution: Solution) -> dict[str, Array]:
+def fields(solution: State) -> dict[str, Array]:
     """What is worth writing beside the solved fields, by name, (N,) or (N, 2) arrays in SI units.
 
     Stress components as stress11, stress22, stress12 (the mean of both shears); or the flux.
@@ -306,7 +306,7 @@ def fields(solution: Solution) -> dict[str, Array]:
     return _RECOVERED[solution.physics.name](solution)
 
 
-def _stresses(solution: Solution) -> dict[str, Array]:
+def _stresses(solution: State) -> dict[str, Array]:
     found = stress(solution)
     return {
         "stress11": found[:, 0, 0],
@@ -315,12 +315,12 @@ def _stresses(solution: Solution) -> dict[str, Array]:
     }
 
 
-def _fluxes(solution: Solution) -> dict[str, Array]:
+def _fluxes(solution: State) -> dict[str, Array]:
     return {"flux": flux(solution)}
 
 
 #: Recovered fields of each physics.
-_RECOVERED: dict[str, Callable[[Solution], dict[str, Array]]] = {
+_RECOVERED: dict[str, Callable[[State], dict[str, Array]]] = {
     ELASTICITY.name: _stresses,
     HEAT.name: _fluxes,
 }

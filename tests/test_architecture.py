@@ -3,6 +3,7 @@
 import ast
 import subprocess
 import sys
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -58,6 +59,47 @@ def test_packages_know_whom_they_may(path):
 def test_a_forbidden_import_is_seen(package, source):
     assert strangers(source, package)
     assert not strangers(source, "cmverify")
+
+
+def imported_modules(path: Path, known: set[str]) -> set[str]:
+    """Modules of the project that a module imports, anywhere in it."""
+    parts = list(path.relative_to(ROOT).with_suffix("").parts)
+    here = parts[:-1]
+    me = ".".join(here if parts[-1] == "__init__" else parts)
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            base = here[: len(here) - node.level + 1] if node.level else []
+            module = ".".join([*base, *([node.module] if node.module else [])])
+            names = {f"{module}.{alias.name}" for alias in node.names}
+            found |= names if names <= known else names | {module}
+    return (found & known) - {me}
+
+
+def circle(imports: dict[str, set[str]]) -> list[str]:
+    """Modules that import each other in a circle, in order; empty if none do."""
+    try:
+        list(TopologicalSorter(imports).static_order())
+    except CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_nothing_imports_in_circles(package):
+    modules: dict[str, Path] = {}
+    for path in sorted((ROOT / package).rglob("*.py")):
+        name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+        modules[name] = path
+    known = set(modules)
+    assert not circle({name: imported_modules(path, known) for name, path in modules.items()})
+
+
+def test_a_circle_is_seen():
+    assert circle({"a": {"b"}, "b": {"c"}, "c": {"a"}})
+    assert not circle({"a": {"b"}, "b": {"c"}, "c": set()})
 
 
 # Settings that have to precede an import, and commands that a program collects.

@@ -7,12 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-
-from cmverify.exchange.export import write_arrays
 
 if TYPE_CHECKING:
     from solver import Scene
@@ -74,36 +71,3 @@ def plan(table: Mapping[str, Any], formula: Callable[[str, Any], Any]) -> Plan:
         options["until"] = lambda run: run.advance >= advance
     programme = Programme(**{key: table[key] for key in PROGRAMME if key in table})
     return Plan(Toughness(**given), programme, options)
-
-
-def write(run: Growth, fields: Mapping[str, np.ndarray], base: Path) -> tuple[Path, ...]:
-    """Fields with the damage as .vtu and .npz, the history and the crack's path as .csv."""
-    arrays = dict(fields) | {"damage": run.damage, "loose": run.loose.astype(float)}
-    paths = write_arrays(run.solution.points, arrays, base)
-    history, path = base.with_suffix(".history.csv"), base.with_suffix(".path.csv")
-    columns = ",".join(run.history.names)
-    np.savetxt(history, run.history.array, delimiter=",", header=columns, comments="")
-    np.savetxt(path, run.path, delimiter=",", header="x,y", comments="")
-    return *paths, history, path
-
-
-def summary(run: Growth) -> dict[str, Any]:
-    """What the terminal shows."""
-    h, steps = run.history, run.steps
-    return {
-        "ended": run.reason,
-        "load factor": run.load_factor,
-        "largest factor": float(h.load_factor.max()),
-        "advance": run.advance,
-        "tip": f"({run.tip[0]:.4g}, {run.tip[1]:.4g})",
-        "bonds broken": len(run.broken_bonds),
-        "loose particles": int(run.loose.sum()),
-        "work": float(h.work[-1]),
-        "stored": float(h.stored[-1]),
-        "dissipated": float(h.dissipated[-1]),
-        "excess": float(h.excess[-1]),
-        "imbalance": float(h.imbalance[-1]),
-        "solves": len(steps),
-        "iterations": int(steps["iterations"].sum()),
-        "bonds a solve": len(run.broken_bonds) / len(steps),
-    }

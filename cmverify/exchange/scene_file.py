@@ -20,7 +20,7 @@ from cmverify.exchange.expressions import Formula
 from cmverify.exchange.fracture_table import Plan
 
 if TYPE_CHECKING:
-    from solver import Crack, Load, Region, Scene, Solution, Support
+    from solver import Crack, Load, Region, Scene, Support
 
 REGIONS = {
     "disc": {"radius", "centre"},
@@ -160,16 +160,6 @@ def read_fracture(path: Path) -> Plan | None:
         raise
     except (ValueError, TypeError) as error:
         raise source.error("fracture", str(error)) from error
-
-
-def fields(solution: Solution) -> dict[str, np.ndarray]:
-    """What a solved scene has to write: unknowns and what is recovered from them."""
-    from solver import recovery
-
-    # A solid without shear stiffness has no rotations.
-    solved = solution.fields().items()
-    known = {name: values for name, values in solved if not np.isnan(values).all()}
-    return {"prescribed": solution.prescribed.astype(float), **known, **recovery.fields(solution)}
 
 
 def _known(source: _Source, section: str, table: Mapping[str, Any], keys: set[str]) -> None:

@@ -1,1 +1,5 @@
-"""What is done with a scene."""
+"""What is done with a scene: each analysis is a function over it and returns a `Result`."""
+
+from .registry import Analysis, analyses
+
+__all__ = ["Analysis", "analyses"]

@@ -12,8 +12,9 @@ from threadpoolctl import threadpool_limits
 from ..arrays import Array
 from ..errors import ConvergenceError
 from ..linear import Task, method
-from ..problem import Discretisation
+from ..problem import Description, Discretisation
 from ..solution import Solution, Statistics
+from .registry import Analysis
 
 
 def solve(
@@ -113,3 +114,11 @@ def _start(discretisation: Discretisation, previous: Solution | None) -> Array:
         values = discretisation.values[:, operator.active]
         given = np.where(operator.identity_rows, values, given)
     return given.ravel()
+
+
+def run(scene: Description, tolerance: float = 1e-10, max_iterations: int = 20_000) -> Solution:
+    """Discretise a scene and solve it; see `solve`."""
+    return solve(Discretisation.of(scene), tolerance, max_iterations)
+
+
+ANALYSIS = Analysis("solve", "Static equilibrium, or steady conduction.", run)

@@ -16,6 +16,7 @@ from ..bonds import damage
 from ..errors import ConvergenceError, NegativeCurvatureError, SceneError
 from ..geometry import Where
 from ..problem import Discretisation
+from ..result import Result, Table
 from ..scene import Scene
 from ..solution import Solution
 from . import crack_path
@@ -34,7 +35,7 @@ _ROUGH = 1e-5
 _NOISE = 1e-10
 
 
-class Growth:
+class Growth(Result):
     """A body whose bonds break: what `until` and monitors see, and what `grow` returns.
 
     Attributes
@@ -171,6 +172,41 @@ class Growth:
     def solution(self) -> Solution:
         """The present equilibrium as a solution, for `solver.recovery` and export."""
         return self.body.solution(self.load_factor)
+
+    @property
+    def points(self) -> Array:
+        """Particle centres, shape (N, 2), m."""
+        return self.body.sound.lattice.points
+
+    def fields(self) -> dict[str, Array]:
+        """Fields of the last equilibrium under its load, the damage, and what came loose."""
+        return {**self.solution.fields(), "damage": self.damage, "loose": self.loose.astype(float)}
+
+    def tables(self) -> dict[str, Table]:
+        """The history, and the points of the furthest crack's path."""
+        history = Table(self.history.names, self.history.array)
+        return {"history": history, "path": Table(("x", "y"), self.path)}
+
+    def summary(self) -> dict[str, Any]:
+        """How the run ended, what broke, the energies and what it took."""
+        h, steps = self.history, self.steps
+        return {
+            "ended": self.reason,
+            "load factor": self.load_factor,
+            "largest factor": float(h.load_factor.max()),
+            "advance": self.advance,
+            "tip": f"({self.tip[0]:.4g}, {self.tip[1]:.4g})",
+            "bonds broken": len(self.broken_bonds),
+            "loose particles": int(self.loose.sum()),
+            "work": float(h.work[-1]),
+            "stored": float(h.stored[-1]),
+            "dissipated": float(h.dissipated[-1]),
+            "excess": float(h.excess[-1]),
+            "imbalance": float(h.imbalance[-1]),
+            "solves": len(steps),
+            "iterations": int(steps["iterations"].sum()),
+            "bonds a solve": len(self.broken_bonds) / len(steps),
+        }
 
     # ---- what happens ---------------------------------------------------------------------
 

@@ -46,7 +46,7 @@ def test_a_scene_is_solved_as_written(tmp_path):
     solution = scene.solve(tolerance=1e-13)
     x, y = solution.points.T
     np.testing.assert_allclose(solution.temperature, x**2 - 5 * y**2, atol=1e-11)
-    fields = scene_file.fields(solution)
+    fields = solution.fields()
     assert set(fields) == {"prescribed", "temperature", "flux"}
 
 

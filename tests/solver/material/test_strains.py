@@ -59,8 +59,7 @@ def test_rows_of_both_ends_add_up_to_the_strains(seed):
             for end, arm in zip((-1.0, 1.0), arms, strict=True)
         ]
         found = sum(
-            np.einsum("abn,bn->an", r, scales[:, None] * u)
-            for r, u in zip(rows, ends, strict=True)
+            np.einsum("abn,bn->an", r, scales[:, None] * u) for r, u in zip(rows, ends, strict=True)
         )
         turn = arms[0] * ends[0][-1] + arms[1] * ends[1][-1]
         wanted = elongations(strains, normal, ends[1] - ends[0], turn)

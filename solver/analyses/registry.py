@@ -1,0 +1,64 @@
+"""The analyses that there are: scene files, the command line, asv and the report walk this.
+
+A module of `solver.analyses` or `solver.fracture` takes part by defining ``ANALYSIS``. Its `run` is
+a function of a scene and of keywords; the keywords' names, annotations and defaults are what a
+scene file's table may say (``[modes]`` with ``count = 10``), so that nothing is declared twice.
+"""
+
+from __future__ import annotations
+
+import pkgutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from inspect import Parameter, signature
+
+from ..result import Result
+
+_ROOMS = ("solver.analyses", "solver.fracture")
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """Something that can be done with a scene.
+
+    Attributes
+    ----------
+    name : str
+        Its table in scene files.
+    says : str
+        In a sentence.
+    run : callable
+        (scene, **options) → Result.
+    """
+
+    name: str
+    says: str
+    run: Callable[..., Result]
+
+    @property
+    def options(self) -> dict[str, Parameter]:
+        """Keywords of `run` after the scene, with annotations (evaluated) and defaults."""
+        return dict(list(signature(self.run, eval_str=True).parameters.items())[1:])
+
+
+@cache
+def analyses() -> dict[str, Analysis]:
+    """All analyses by name, the static one first.
+
+    Raises
+    ------
+    ValueError
+        If two share a name.
+    """
+    found: dict[str, Analysis] = {}
+    for room in _ROOMS:
+        for module in sorted(pkgutil.iter_modules(import_module(room).__path__)):
+            one = getattr(import_module(f"{room}.{module.name}"), "ANALYSIS", None)
+            if one is None:
+                continue
+            if one.name in found:
+                raise ValueError(f"two analyses are called {one.name!r}")
+            found[one.name] = one
+    return dict(sorted(found.items(), key=lambda item: (item[0] != "solve", item[0])))

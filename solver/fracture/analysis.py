@@ -1,0 +1,79 @@
+"""Fracture as scene files ask for it: toughness, programme and options in one flat table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf, radians
+
+from ..analyses.registry import Analysis
+from ..geometry import Where
+from ..scene import Scene
+from .breaking import Criterion
+from .growth import Growth
+from .programme import Control, Programme
+from .quasistatic import grow
+from .toughness import Toughness, ToughnessCalibration
+
+
+def run(
+    scene: Scene,
+    G1: float,
+    G2: float | None = None,
+    n: int = 2,
+    frequency: int = 1,
+    axis_degrees: float = 0.0,
+    toughness_calibration: ToughnessCalibration = "lattice",
+    start: float = 0.0,
+    stop: float = inf,
+    increment: float | None = None,
+    overload: float | None = None,
+    levels: Sequence[float] | None = None,
+    control: Control = "fixed",
+    no_fail: Where | None = None,
+    tension_only: bool = True,
+    criterion: Criterion = "total",
+    batch: int | None = None,
+    advance: float | None = None,
+    max_solves: int | None = None,
+    tolerance: float = 1e-8,
+    checkpoint: str | None = None,
+) -> Growth:
+    """Let the scene's cracks grow.
+
+    Parameters
+    ----------
+    scene : Scene
+    G1, G2, n, frequency, axis_degrees, toughness_calibration
+        See `Toughness`; G1 and G2 in J/m².
+    start, stop, increment, overload, levels, control
+        See `Programme`.
+    advance : float, optional
+        The run ends when the furthest tip has gone so far, m.
+    no_fail, tension_only, criterion, batch, max_solves, tolerance, checkpoint
+        See `grow`.
+
+    Raises
+    ------
+    SceneError, ToughnessError
+        If the numbers make no run.
+    """
+    toughness = Toughness(
+        G1, G2, n, frequency, radians(axis_degrees), calibration=toughness_calibration
+    )
+    programme = Programme(start, stop, increment, overload, levels, control)
+    return grow(
+        scene,
+        toughness,
+        programme,
+        no_fail=() if no_fail is None else (no_fail,),
+        tension_only=tension_only,
+        criterion=criterion,
+        batch=batch,
+        tolerance=tolerance,
+        max_solves=max_solves,
+        until=None if advance is None else lambda run: bool(run.advance >= advance),
+        checkpoint=checkpoint,
+    )
+
+
+ANALYSIS = Analysis("fracture", "Quasi-static growth of cracks, bond by bond.", run)

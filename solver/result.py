@@ -1,0 +1,103 @@
+"""What every analysis returns can do: say its fields, sum itself up, and write itself."""
+
+from __future__ import annotations
+
+import os
+from abc import ABC, abstractmethod
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .arrays import Array
+
+#: Of the .npz files: raised when a key changes its name, shape or unit.
+FORMAT = 1
+
+
+class Table(NamedTuple):
+    """Rows of named columns, such as a history: `values` has the shape (rows, columns)."""
+
+    columns: tuple[str, ...]
+    values: Array
+
+
+class Result(ABC):
+    """What an analysis returns.
+
+    Fields are given at `points`, in SI units and by the names that files and figures use.
+    """
+
+    @property
+    @abstractmethod
+    def points(self) -> Array:
+        """Where the fields are, shape (N, 2), m."""
+
+    @abstractmethod
+    def fields(self) -> dict[str, Array]:
+        """Fields by name, shapes (N,) or (N, 2)."""
+
+    @abstractmethod
+    def summary(self) -> dict[str, Any]:
+        """Plain numbers and words by name, for a terminal or JSON."""
+
+    def tables(self) -> dict[str, Table]:
+        """Histories, paths and the like by name; none by default."""
+        return {}
+
+    def write(self, stem: str | os.PathLike[str]) -> tuple[Path, ...]:
+        """Write fields as .vtu (ParaView) and .npz (Python), tables as .csv.
+
+        Parameters
+        ----------
+        stem : path
+            Suffixes are added to it as it stands.
+
+        Returns
+        -------
+        tuple of Path
+        """
+        paths = list(write_arrays(self.points, self.fields(), stem))
+        for name, table in self.tables().items():
+            path = suffixed(stem, f".{name}.csv")
+            header = ",".join(table.columns)
+            np.savetxt(path, table.values, delimiter=",", header=header, comments="")
+            paths.append(path)
+        return tuple(paths)
+
+
+def suffixed(stem: str | os.PathLike[str], suffix: str) -> Path:
+    """The path with a suffix added; dots in its name stay ("h_0.05" is no suffix)."""
+    path = Path(stem)
+    return path.with_name(path.name + suffix)
+
+
+def write_arrays(
+    points: Array,
+    arrays: dict[str, Array],
+    stem: str | os.PathLike[str],
+    triangles: NDArray[np.int64] | None = None,
+) -> tuple[Path, Path]:
+    """Write point data on (N, 2) points as .vtu and .npz; vectors (N, 2) are padded for VTK."""
+    import meshio
+
+    vtu, npz = suffixed(stem, ".vtu"), suffixed(stem, ".npz")
+    vtu.parent.mkdir(parents=True, exist_ok=True)
+    count = len(points)
+    cells = (
+        [("vertex", np.arange(count).reshape(-1, 1))]
+        if triangles is None
+        else [("triangle", np.asarray(triangles))]
+    )
+    data = {
+        name: np.column_stack([a, np.zeros(count)]) if a.ndim == 2 else a
+        for name, a in arrays.items()
+    }
+    mesh = meshio.Mesh(np.column_stack([points, np.zeros(count)]), cells, point_data=data)
+    mesh.write(vtu, file_format="vtu")
+    kept: dict[str, Any] = {"points": points, "format": FORMAT, **arrays}
+    if triangles is not None:
+        kept["triangles"] = np.asarray(triangles)
+    np.savez_compressed(npz, **kept)
+    return vtu, npz
