@@ -12,10 +12,12 @@ from typing import Any
 
 import numba as nb
 
-_OPTIONS: Any = {"parallel": True, "cache": True, "fastmath": {"contract", "nsz"}, "nogil": True}
+from ..operators.compiled import kernel
+
+_OPTIONS: Any = {"parallel": True, "fastmath": {"contract", "nsz"}, "nogil": True}
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def bond_energies(grid, segments, steps, geometry, factors, tension, out):
     """Weighted energy f (a s² + b γ²) of every bond, zero where tension is asked for and s < 0.
 
@@ -49,7 +51,7 @@ def bond_energies(grid, segments, steps, geometry, factors, tension, out):
                 row[first + j] = 0.0 if tension and axial < 0.0 else value
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def bond_work(grid, other, segments, steps, geometry, factors, out):
     """Σ f (a s s' + b γ γ') over the bonds of each segment, for two fields.
 
