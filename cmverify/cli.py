@@ -161,28 +161,42 @@ def solve(
     out: Annotated[
         Path | None, typer.Option(help="Path of the fields without suffix; the scene's name.")
     ] = None,
+    max_memory: Annotated[
+        float | None, typer.Option(min=0.0, help="GiB it may take; most of what is free.")
+    ] = None,
+    max_minutes: Annotated[
+        float, typer.Option(min=0.0, help="Estimated minutes that a solve may take.")
+    ] = 15.0,
 ) -> None:
     """Solve a scene file, or let its cracks grow, and write its fields as .vtu and .npz."""
     from rich.console import Console
 
     from cmverify.exchange import fracture_table, scene_file
-    from cmverify.exchange.export import write_arrays
+    from cmverify.exchange.export import check_writable, write_arrays
 
     base = out or scene.with_suffix("")
     paths: tuple[Path, ...]
     try:
-        described, options = scene_file.read(scene)
-        plan = scene_file.read_fracture(scene)
-        if plan is None:
-            solution = described.solve(**options)
+        request = scene_file.request(
+            scene,
+            None if max_memory is None else max_memory * 2**30,
+            max_minutes * 60,
+        )
+        check_writable(base)
+        if request.plan is None:
+            solution = request.solve()
             said = solution.statistics.as_dict()
             paths = write_arrays(solution.points, scene_file.fields(solution), base)
         else:
-            run = plan.run(described)
+            run = request.grow()
             said = fracture_table.summary(run)
             paths = fracture_table.write(run, scene_file.fields(run.solution), base)
-    except (ValueError, RuntimeError) as error:
+    except ValueError as error:
         _refuse(str(error))
+    except OSError as error:
+        _refuse(f"{base} cannot be written: {error.strerror or error}")
+    except KeyboardInterrupt:
+        _interrupted("nothing was written; a [fracture] table may name a checkpoint to go on from")
     console = Console()
     for name, value in said.items():
         console.print(

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -53,9 +56,47 @@ def write_arrays(
         for name, a in arrays.items()
     }
     mesh = meshio.Mesh(np.column_stack([points, np.zeros(count)]), cells, point_data=data)
-    vtu, npz = base.with_suffix(".vtu"), base.with_suffix(".npz")
-    mesh.write(vtu, file_format="vtu")
+    vtu, npz = named(base, ".vtu"), named(base, ".npz")
+    with replacing(vtu) as partial:
+        mesh.write(partial, file_format="vtu")
     extra: dict[str, Any] = {} if triangles is None else {"triangles": np.asarray(triangles)}
     extra |= arrays
-    np.savez_compressed(npz, points=points, **extra)
+    with replacing(npz) as partial, open(partial, "wb") as stream:
+        np.savez_compressed(stream, points=points, **extra)
     return vtu, npz
+
+
+def named(base: Path, suffix: str) -> Path:
+    """The file of a base name, which is taken whole: "h_0.02" has no suffix."""
+    return base.with_name(base.name + suffix)
+
+
+@contextmanager
+def replacing(target: Path) -> Iterator[Path]:
+    """A path to write to, which takes the place of `target` when all of it is written."""
+    partial = target.with_name(f".{target.name}.{os.getpid()}.partial")
+    try:
+        yield partial
+        os.replace(partial, target)
+    finally:
+        with suppress(OSError):
+            partial.unlink(missing_ok=True)
+
+
+def check_writable(base: Path) -> None:
+    """Refuse a base name to which nothing could be written, before any work.
+
+    Raises
+    ------
+    ValueError
+        Naming the path and what the system says.
+    """
+    if not base.name:
+        raise ValueError(f"{base} names no file")
+    try:
+        base.parent.mkdir(parents=True, exist_ok=True)
+        trial = base.with_name(f".{base.name}.{os.getpid()}.trial")
+        trial.touch()
+        trial.unlink()
+    except OSError as error:
+        raise ValueError(f"nothing can be written to {base}: {error.strerror}") from error
