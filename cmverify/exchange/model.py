@@ -233,7 +233,6 @@ class Traction(Table):
     start: Point = Field(description="m")
     end: Point = Field(description="m")
 
-
     @model_validator(mode="after")
     def _length(self) -> Traction:
         if self.start == self.end:
