@@ -2,16 +2,34 @@
 
 from __future__ import annotations
 
+import io
+import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any, NoReturn
 
 import typer
+from typer.core import TyperGroup
 
 from cmverify.case import Level
 from cmverify.studies.speed.command import speed
 from cmverify.studies.stability.command import stability
 
+
+class _Commands(TyperGroup):
+    """Commands that end with exit code 3 and one line when they are interrupted."""
+
+    def invoke(self, ctx: Any) -> Any:
+        from cmverify.run.lifeline import in_good_order
+
+        try:
+            with in_good_order():
+                return super().invoke(ctx)
+        except KeyboardInterrupt:
+            _interrupted("nothing is left half-written; the same command starts anew")
+
+
 app = typer.Typer(
+    cls=_Commands,
     no_args_is_help=True,
     add_completion=False,
     help="Verify and time continuum-molecular models of anisotropic solids.",
@@ -46,8 +64,36 @@ def run(
     json: Annotated[Path | None, typer.Option(help="Write all numbers to this file.")] = None,
 ) -> None:
     """Run cases, judge them and write the report. Exit code 0 only if every check holds."""
+    from cmverify.run import folder
+
+    cases = _select(names)
+    if jobs < 0:
+        _refuse(f"--jobs {jobs}: at least one worker is needed")
+    if not timeout > 0:
+        _refuse(f"--timeout {timeout:g}: a measurement needs some time")
+    try:
+        if json is not None:
+            folder.check_file(json)
+        with folder.claimed(out):
+            _run(cases, names, level, jobs, out, resume, timeout, json)
+    except folder.FolderError as error:
+        _refuse(str(error))
+
+
+def _run(  # type: ignore[no-untyped-def]
+    cases,
+    names: list[str] | None,
+    level: Level,
+    jobs: int,
+    out: Path,
+    resume: bool,
+    timeout: float,
+    json: Path | None,
+) -> NoReturn:
+    """Measure, judge and report, in a folder that is this run's own."""
     import datetime
     import time
+    from dataclasses import replace
 
     from rich.console import Console
 
@@ -56,29 +102,36 @@ def run(
     from cmverify.run.progress import LiveProgress
     from cmverify.run.threads import available_cores, threads_per_worker
 
-    cases = _select(names)
     jobs = jobs or available_cores()
-    if jobs < 0:
-        _refuse(f"--jobs {jobs}: at least one worker is needed")
     console = Console()
     started, clock = datetime.datetime.now().astimezone(), time.perf_counter()
-    total = sum(1 for case in cases for _ in case.plan(level))
-    with LiveProgress(console, total) as live:
-        records = runner.run(
-            cases, level, out, jobs=jobs, resume=resume, timeout=timeout, listen=live.listen
-        )
-    wall = time.perf_counter() - clock
+    plan = runner.plan(cases, level)
     info = summary.RunInfo(
         level=str(level),
         jobs=jobs,
         threads=threads_per_worker(jobs),
         command=_command(names, level, jobs, out),
         started=started.isoformat(timespec="seconds"),
-        wall_seconds=wall,
+        wall_seconds=0.0,
         environment=environment.describe().as_dict(),
-        measured=[[r.case, r.method, r.resolution] for r in records],
+        measured=[list(task) for task in plan],
+        finished=False,
     )
-    summary.save_info(info, out)
+    go_on = f"go on with: {info.command} --resume"
+    try:
+        # Before anything is measured: what a killed run has finished can be reported.
+        summary.save_info(info, out)
+        with LiveProgress(console, len(plan)) as live:
+            records = runner.run(
+                cases, level, out, jobs=jobs, resume=resume, timeout=timeout, listen=live.listen
+            )
+        info = replace(info, wall_seconds=time.perf_counter() - clock, finished=True)
+        summary.save_info(info, out)
+    except KeyboardInterrupt:
+        done = sum(1 for task in plan if _recorded(out, task))
+        _interrupted(f"{done} of {len(plan)} measurements are finished and kept; {go_on}")
+    except OSError as error:
+        _interrupted(f"{error.strerror or error}; what is finished is kept; {go_on}")
     judged = summary.summarise(cases, records)
     terminal.print_verdicts(console, judged)
     _write(judged, info, out, json, console)
@@ -93,10 +146,18 @@ def report(
     """Render the report of a finished run again."""
     from rich.console import Console
 
-    from cmverify.report import summary
+    from cmverify.report import summary, terminal
+    from cmverify.run import folder
 
     judged, info = _finished(out)
-    _write(judged, info, out, json, Console())
+    try:
+        folder.check_file(out / "results.json")
+        folder.check_file(json or out / "results.json")
+    except folder.FolderError as error:
+        _refuse(str(error))
+    console = Console()
+    terminal.print_missing(console, judged)
+    _write(judged, info, out, json, console)
     raise typer.Exit(0 if summary.all_passed(judged) else 1)
 
 
@@ -161,24 +222,36 @@ def solve(
     out: Annotated[
         Path | None, typer.Option(help="Path of the fields without suffix; the scene's name.")
     ] = None,
+    max_memory: Annotated[
+        float | None, typer.Option(min=0.0, help="GiB it may take; most of what is free.")
+    ] = None,
+    max_minutes: Annotated[
+        float, typer.Option(min=0.0, help="Estimated minutes that a solve may take.")
+    ] = 15.0,
 ) -> None:
     """Solve a scene file, or let its cracks grow, and write its fields as .vtu and .npz."""
     from rich.console import Console
 
     from cmverify.exchange import scene_file
+    from cmverify.exchange.export import check_writable
     from solver.result import Result
 
     base = out or scene.with_suffix("")
     try:
-        described, options = scene_file.read(scene)
-        plan = scene_file.read_fracture(scene)
-        if plan is None:
-            result: Result = described.solve(**options)
-        else:
-            result = plan.run(described)
+        request = scene_file.request(
+            scene,
+            None if max_memory is None else max_memory * 2**30,
+            max_minutes * 60,
+        )
+        check_writable(base)
+        result: Result = request.solve() if request.plan is None else request.grow()
         said, paths = result.summary(), result.write(base)
-    except (ValueError, RuntimeError) as error:
+    except ValueError as error:
         _refuse(str(error))
+    except OSError as error:
+        _refuse(f"{base} cannot be written: {error.strerror or error}")
+    except KeyboardInterrupt:
+        _interrupted("nothing was written; a [fracture] table may name a checkpoint to go on from")
     console = Console()
     for name, value in said.items():
         console.print(
@@ -191,6 +264,10 @@ def solve(
 
 def main() -> None:
     """Entry point of the `cmverify` script."""
+    for stream in (sys.stdout, sys.stderr):
+        # A terminal that cannot show a sign shows another one.
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
     app()
 
 
@@ -207,14 +284,18 @@ def _finished(out: Path):  # type: ignore[no-untyped-def]
     """Verdicts and info of the run in a folder, judged anew by the checks as they are now."""
     from cmverify.cases import registry
     from cmverify.report import summary
-    from cmverify.run import results
 
     try:
         info = summary.load_info(out)
-        own = {tuple(task) for task in info.measured}
-        known = results.load_all(out)
-        records = [r for r in known if (r.case, r.method, r.resolution) in own]
-        return summary.summarise(registry.all_cases(), records), info
+        cases = registry.all_cases()
+        known = {(case.name, method.name) for case in cases for method in case.methods}
+        for case, method, _ in info.measured:
+            if (case, method) not in known:
+                _refuse(
+                    f"the run in {out} measured {case} with {method}, which this version does not "
+                    f"know: run it anew"
+                )
+        return summary.summarise(cases, summary.complete(info, out)), info
     except ValueError as error:
         _refuse(str(error))
 
@@ -224,10 +305,16 @@ def _write(judged, info, out: Path, json: Path | None, console) -> None:  # type
     from cmverify.report.build import build
     from cmverify.run import results
 
-    numbers = summary.as_json(judged, info)
-    for path in {out / "results.json", json or out / "results.json"}:
-        results.write_text(path, numbers)
-    page = build(judged, info, out)
+    again = f"the results are kept; render them with: cmverify report --out {out}"
+    try:
+        numbers = summary.as_json(judged, info)
+        for path in {out / "results.json", json or out / "results.json"}:
+            results.write_text(path, numbers)
+        page = build(judged, info, out)
+    except KeyboardInterrupt:
+        _interrupted(again)
+    except OSError as error:
+        _interrupted(f"the report cannot be written ({error.strerror or error}): {again}")
     console.print(f"Report: {page}  (numbers: {out / 'results.json'}, fields: {out / 'fields'})")
 
 
@@ -236,7 +323,20 @@ def _command(names: list[str] | None, level: Level, jobs: int, out: Path) -> str
     return " ".join(parts)
 
 
-def _refuse(message: str) -> None:
+def _recorded(out: Path, task: tuple[str, str, int]) -> bool:
+    """Whether there is a record of a measurement."""
+    from cmverify.run import results
+
+    return results.stem(out, *task).with_suffix(".json").is_file()
+
+
+def _refuse(message: str) -> NoReturn:
     """Print an error and leave with code 2."""
     typer.secho(f"error: {message}", fg=typer.colors.RED, err=True)
     raise typer.Exit(2)
+
+
+def _interrupted(message: str) -> NoReturn:
+    """Say how to go on and leave with code 3."""
+    typer.secho(f"interrupted: {message}", fg=typer.colors.YELLOW, err=True)
+    raise typer.Exit(3)

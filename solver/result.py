@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -62,7 +64,8 @@ class Result(ABC):
         for name, table in self.tables().items():
             path = suffixed(stem, f".{name}.csv")
             header = ",".join(table.columns)
-            np.savetxt(path, table.values, delimiter=",", header=header, comments="")
+            with replacing(path) as partial:
+                np.savetxt(partial, table.values, delimiter=",", header=header, comments="")
             paths.append(path)
         return tuple(paths)
 
@@ -71,6 +74,18 @@ def suffixed(stem: str | os.PathLike[str], suffix: str) -> Path:
     """The path with a suffix added; dots in its name stay ("h_0.05" is no suffix)."""
     path = Path(stem)
     return path.with_name(path.name + suffix)
+
+
+@contextmanager
+def replacing(target: Path) -> Iterator[Path]:
+    """A path to write to, which takes the place of `target` when all of it is written."""
+    partial = target.with_name(f".{target.name}.{os.getpid()}.partial")
+    try:
+        yield partial
+        os.replace(partial, target)
+    finally:
+        with suppress(OSError):
+            partial.unlink(missing_ok=True)
 
 
 def write_arrays(
@@ -95,9 +110,11 @@ def write_arrays(
         for name, a in arrays.items()
     }
     mesh = meshio.Mesh(np.column_stack([points, np.zeros(count)]), cells, point_data=data)
-    mesh.write(vtu, file_format="vtu")
+    with replacing(vtu) as partial:
+        mesh.write(partial, file_format="vtu")
     kept: dict[str, Any] = {"points": points, "format": FORMAT, **arrays}
     if triangles is not None:
         kept["triangles"] = np.asarray(triangles)
-    np.savez_compressed(npz, **kept)
+    with replacing(npz) as partial, open(partial, "wb") as stream:
+        np.savez_compressed(stream, **kept)
     return vtu, npz

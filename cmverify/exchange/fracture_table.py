@@ -1,25 +1,24 @@
-"""The [fracture] table of a scene file: read, run, written.
+"""The [fracture] table of a scene file: run, written.
 
 A scene with this table is not solved once: its cracks grow, by `solver.fracture.grow`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cmverify.exchange.model import Fracture
+from cmverify.exchange.refusal import Source
+
 if TYPE_CHECKING:
     from solver import Scene
     from solver.fracture import Growth
 
-TOUGHNESS = {"G1", "G2", "n", "frequency", "axis_degrees", "toughness_calibration"}
-PROGRAMME = {"start", "stop", "increment", "overload", "levels", "control"}
-OPTIONS = {"batch", "criterion", "tension_only", "max_solves", "tolerance"}
-#: Every key of the table.
-KEYS = TOUGHNESS | PROGRAMME | OPTIONS | {"no_fail", "advance", "checkpoint"}
+PROGRAMME = ("start", "stop", "increment", "overload", "levels", "control")
+OPTIONS = ("batch", "criterion", "tension_only", "max_solves", "tolerance")
 
 
 @dataclass(frozen=True)
@@ -44,30 +43,31 @@ class Plan:
         return fracture.grow(scene, self.toughness, self.programme, **self.options)
 
 
-def plan(table: Mapping[str, Any], formula: Callable[[str, Any], Any]) -> Plan:
-    """Turn the table into a plan; `formula` (key, value) makes functions of formulas.
+def plan(table: Fracture, source: Source) -> Plan:
+    """Turn the table into a plan.
 
     Raises
     ------
-    ValueError
-        If G1 is missing or a value makes no sense.
+    SceneFileError
+        If a value makes no sense, or the checkpoint cannot be written.
     """
     from solver import Programme, Toughness
+    from solver.fracture import checkpoint
 
-    if "G1" not in table:
-        raise ValueError("the key 'G1' (fracture energy, J/m²) is missing")
-    given = {key: table[key] for key in ("G1", "G2", "n", "frequency") if key in table}
-    if "axis_degrees" in table:
-        given["axis"] = float(np.radians(table["axis_degrees"]))
-    if "toughness_calibration" in table:
-        given["calibration"] = table["toughness_calibration"]
-    options = {key: table[key] for key in OPTIONS if key in table}
-    if "no_fail" in table:
-        options["no_fail"] = [formula("no_fail", table["no_fail"])]
-    if "checkpoint" in table:
-        options["checkpoint"] = table["checkpoint"]
-    if "advance" in table:
-        advance = float(table["advance"])
+    given = {key: value for key, value in table if value is not None}
+    with source.at("fracture"):
+        toughness = Toughness(
+            table.G1, table.G2, table.n, table.frequency, float(np.radians(table.axis_degrees)),
+            table.toughness_calibration,
+        )  # fmt: skip
+        programme = Programme(**{key: given[key] for key in PROGRAMME if key in given})
+    options = {key: given[key] for key in OPTIONS if key in given}
+    if table.no_fail is not None:
+        options["no_fail"] = [table.no_fail]
+    if table.checkpoint is not None:
+        with source.at("fracture", "checkpoint"):
+            checkpoint.check(table.checkpoint)
+        options["checkpoint"] = table.checkpoint
+    if (advance := table.advance) is not None:
         options["until"] = lambda run: run.advance >= advance
-    programme = Programme(**{key: table[key] for key in PROGRAMME if key in table})
-    return Plan(Toughness(**given), programme, options)
+    return Plan(toughness, programme, options)

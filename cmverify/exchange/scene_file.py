@@ -1,141 +1,150 @@
 """Scenes in TOML: read, checked key by key, turned into a `solver.Scene`.
 
-See examples/disc.toml for a complete one. A key that does not exist is refused with its line and
-the nearest key that does.
+See examples/disc.toml for a complete one, and `model` for what there is to say. A file is refused
+in one line that names it, the line and the key: what the declaration does not allow, what the
+solver's objects do not accept, formulas without a value on the body, and what would cost too much.
 """
 
 from __future__ import annotations
 
-import difflib
 import re
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cmverify.exchange import fracture_table
-from cmverify.exchange.expressions import Formula
+from cmverify.exchange import budget, fracture_table, model
 from cmverify.exchange.fracture_table import Plan
+from cmverify.exchange.model import SceneFile
+from cmverify.exchange.refusal import Place, SceneFileError, Source
 
 if TYPE_CHECKING:
-    from solver import Crack, Load, Region, Scene, Support
+    from solver import Crack, Load, Region, Scene, Solution, Support
+    from solver.fracture import Growth
 
-REGIONS = {
-    "disc": {"radius", "centre"},
-    "rectangle": {"width", "height", "centre"},
-    "polygon": {"vertices"},
-}
-MATERIALS = {
-    "conductivity": {"tensor", "angle_degrees"},
-    "elastic": {"voigt", "angle_degrees"},
-    "isotropic": {"E", "nu", "plane"},
-    "orthotropic": {"E1", "E2", "G12", "nu12", "plane", "angle_degrees"},
-}
-DISCRETISATION = {"spacing", "m", "calibration", "area_rule", "influence", "surface", "law"}
-LAWS = {"cosine", "two-harmonic", "fourfold", "uniform-shear"}
-VALUES = {"displacement", "u1", "u2", "rotation", "temperature"}
-LOADS = {
-    "body_force": {"value", "where"},
-    "couple": {"value", "where"},
-    "source": {"value", "where"},
-    "traction": {"value", "start", "end"},
-    "stress": {"value", "where"},
-    "flux": {"value", "where"},
-}
-SECTIONS = {"title", "discretisation", "region", "material", "support", "load", "crack", "solve"}
-SECTIONS |= {"fracture"}
+__all__ = ["Request", "SceneFileError", "read", "read_fracture", "request"]
 
 
-class SceneFileError(ValueError):
-    """A scene file asks for something that does not exist or leaves out what is needed."""
+@dataclass(frozen=True)
+class Request:
+    """A scene file that has been read.
+
+    Attributes
+    ----------
+    source : Source
+        To say where something is wrong.
+    file : SceneFile
+    scene : Scene
+    plan : Plan or None
+        How its cracks grow, if they do.
+    """
+
+    source: Source
+    file: SceneFile
+    scene: Scene
+    plan: Plan | None
+
+    def solve(self) -> Solution:
+        """Static (or steady) solution.
+
+        Raises
+        ------
+        SceneFileError
+            If the physics says no.
+        """
+        with self._refused():
+            return self.scene.solve(tolerance=self.file.solve.tolerance)
+
+    def grow(self) -> Growth:
+        """Let its cracks grow.
+
+        Raises
+        ------
+        SceneFileError
+            If the physics says no.
+        """
+        assert self.plan is not None
+        with self._refused():
+            return self.plan.run(self.scene)
+
+    @contextmanager
+    def _refused(self) -> Iterator[None]:
+        """What the solver refuses, with the table that it is about."""
+        try:
+            yield
+        except (ValueError, RuntimeError, ArithmeticError, np.linalg.LinAlgError) as error:
+            raise self.source.error(self._place(error), str(error)) from error
+        except MemoryError as error:
+            message = "the scene does not fit into memory: take a larger spacing or a smaller m"
+            raise self.source.error(("discretisation",), message) from error
+
+    def _place(self, error: Exception) -> Place:
+        import solver
+
+        message = str(error)
+        for number, crack in enumerate(self.scene.cracks):
+            if str(crack.points) in message:
+                return ("crack", number)
+        if self.plan is not None:
+            if "checkpoint" in message:
+                return ("fracture", "checkpoint")
+            if isinstance(error, solver.ToughnessError) or "criterion" in message:
+                return ("fracture",)
+        kinds: list[tuple[type[Exception], Place]] = [
+            (solver.MechanismError, ("support",)),
+            (solver.CalibrationError, ("material",)),
+            (solver.InadmissibleMaterialError, ("material",)),
+            (solver.ConvergenceError, ("solve", "tolerance")),
+            (solver.NegativeCurvatureError, ("material",)),
+        ]
+        for kind, place in kinds:
+            if isinstance(error, kind):
+                # A body that nothing holds has no table of supports to point to.
+                return place if place[0] in self.source.data else ("discretisation",)
+        return ("discretisation",)
 
 
-class _Source:
-    """The file's text, to find the line of a key: tomllib does not keep it."""
+def request(path: Path, memory: float | None = None, seconds: float = budget.SECONDS) -> Request:
+    """Read a scene file and check everything that can be checked without solving it.
 
-    def __init__(self, path: Path, text: str) -> None:
-        self.path, self.lines = path, text.splitlines()
-
-    def error(self, section: str, message: str, key: str | None = None) -> SceneFileError:
-        line = self._line(section, key)
-        place = f"{self.path}:{line}" if line else str(self.path)
-        return SceneFileError(
-            f"{place}: [{section}] {message}" if section else f"{place}: {message}"
-        )
-
-    def _line(self, section: str, key: str | None) -> int | None:
-        name, _, index = section.partition(" ")
-        occurrence = int(index.strip("#")) if index else 1
-        start, seen = (0, occurrence) if not section else (None, 0)
-        for number, line in enumerate(self.lines, 1):
-            header = re.match(r"\s*\[+\s*([\w.-]+)\s*\]+", line)
-            if header:
-                if start is not None and section:
-                    break
-                seen += header[1] == name
-                if header[1] == name and seen == occurrence:
-                    start = number
-            if (
-                start is not None
-                and key
-                and re.match(rf"\s*[\"']?{re.escape(key)}[\"']?\s*=", line)
-            ):
-                return number
-            if not section and key and header and header[1] == key:
-                return number
-        return start or None
-
-
-def read(path: Path) -> tuple[Scene, dict[str, Any]]:
-    """Read a scene and the keyword arguments of its `solve`.
+    Parameters
+    ----------
+    path : Path
+    memory : float, optional
+        Bytes that it may take; most of what is free by default.
+    seconds : float
+        Seconds that set-up and a solve may take by the estimate.
 
     Raises
     ------
     SceneFileError
-        If the file is missing, is not TOML, or has a key or value that does not exist.
+        If the file is missing, is not TOML, says something that does not exist or makes no sense,
+        or asks for more than may be spent.
     """
-    try:
-        text = path.read_text()
-        data = tomllib.loads(text)
-    except OSError as error:
-        raise SceneFileError(f"{path} cannot be read: {error.strerror}") from error
-    except tomllib.TOMLDecodeError as error:
-        raise SceneFileError(f"{path} is not TOML: {error}") from error
-    source = _Source(path, text)
-    _known(source, "", data, SECTIONS)
-    for section in ("discretisation", "region", "material"):
-        if section not in data:
-            raise source.error("", f"the section [{section}] is missing")
-    from solver import Scene
+    source = _source(path)
+    file = _declared(source)
+    scene = _scene(file, source)
+    _afford(file, scene, source, memory, seconds)
+    plan = None if file.fracture is None else fracture_table.plan(file.fracture, source)
+    _try_on_lattice(file, scene, source)
+    return Request(source, file, scene, plan)
 
-    try:
-        options = _discretisation(source, data["discretisation"])
-        scene = Scene(
-            region=_region(source, data["region"]),
-            material=_material(source, data["material"]),
-            supports=[
-                _support(source, f"support #{i}", table)
-                for i, table in enumerate(data.get("support", []), 1)
-            ],
-            loads=[
-                _load(source, f"load #{i}", table)
-                for i, table in enumerate(data.get("load", []), 1)
-            ],
-            cracks=[
-                _crack(source, f"crack #{i}", table)
-                for i, table in enumerate(data.get("crack", []), 1)
-            ],
-            **options,
-        )
-    except SceneFileError:
-        raise
-    except (ValueError, TypeError) as error:
-        raise SceneFileError(f"{path}: {error}") from error
-    solve = data.get("solve", {})
-    _known(source, "solve", solve, {"tolerance"})
-    return scene, solve
+
+def read(path: Path) -> tuple[Scene, dict[str, Any]]:
+    """The scene of a file and the keyword arguments of its `solve`.
+
+    Raises
+    ------
+    SceneFileError
+        As `request`.
+    """
+    found = request(path)
+    return found.scene, found.file.solve.model_dump(exclude_unset=True)
 
 
 def read_fracture(path: Path) -> Plan | None:
@@ -144,150 +153,207 @@ def read_fracture(path: Path) -> Plan | None:
     Raises
     ------
     SceneFileError
-        As `read`.
+        As `request`.
     """
-    text = path.read_text()
-    table = tomllib.loads(text).get("fracture")
-    if table is None:
-        return None
-    source = _Source(path, text)
-    _known(source, "fracture", table, fracture_table.KEYS)
+    return request(path).plan
+
+
+# ---- from bytes to the declared model ---------------------------------------------------
+
+
+def _source(path: Path) -> Source:
     try:
-        return fracture_table.plan(
-            table, lambda key, value: _formula(source, "fracture", key, value)
-        )
-    except SceneFileError:
-        raise
-    except (ValueError, TypeError) as error:
-        raise source.error("fracture", str(error)) from error
-
-
-def _known(source: _Source, section: str, table: Mapping[str, Any], keys: set[str]) -> None:
-    if not isinstance(table, Mapping):
-        raise source.error(section, "must be a table of keys and values")
-    for key in table:
-        if key not in keys:
-            near = difflib.get_close_matches(key, keys, n=1, cutoff=0.5)
-            hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(sorted(keys))}"
-            raise source.error(section, f"unknown key {key!r}; {hint}", key)
-
-
-def _need(source: _Source, section: str, table: Mapping[str, Any], key: str) -> Any:
-    if key not in table:
-        raise source.error(section, f"the key {key!r} is missing")
-    return table[key]
-
-
-def _kind(
-    source: _Source, section: str, table: Mapping[str, Any], key: str, kinds: Mapping[str, set[str]]
-) -> str:
-    """The value of `key`, which decides what other keys there may be."""
-    kind = _need(source, section, table, key)
-    if kind not in kinds:
-        raise source.error(section, f"{key} = {kind!r} is not one of {', '.join(kinds)}", key)
-    _known(source, section, table, kinds[kind] | {key})
-    return str(kind)
-
-
-def _formula(source: _Source, section: str, key: str, value: Any) -> Any:
-    """A number as it is, a formula as a function, a list of them as a vector function."""
-    try:
-        if isinstance(value, str):
-            return Formula(value)
-        if isinstance(value, list) and any(isinstance(part, str) for part in value):
-            parts = [Formula(str(part)) for part in value]
-            return _stack(parts)
+        text = path.read_bytes().decode("utf-8-sig")
+    except OSError as error:
+        raise SceneFileError(f"{path} cannot be read: {error.strerror}") from error
     except ValueError as error:
-        raise source.error(section, str(error), key) from error
-    return value
+        if not isinstance(error, UnicodeDecodeError):  # a name that no file can have
+            raise SceneFileError(f"{str(path)!r} cannot be read: {error}") from error
+        line = error.object[: error.start].count(b"\n") + 1
+        raise SceneFileError(
+            f"{path}:{line}: the file is not UTF-8 (byte {error.object[error.start]:#04x})"
+        ) from error
+    try:
+        return Source(path, text, tomllib.loads(text))
+    except RecursionError as error:
+        raise SceneFileError(f"{path} is not TOML of a scene: nested too deeply") from error
+    except ValueError as error:
+        found = re.search(r"at line (\d+)", str(error))
+        place = f"{path}:{found[1]}:" if found else f"{path}:"
+        raise SceneFileError(f"{place} is not TOML: {error}") from error
 
 
-def _stack(parts: list[Formula]) -> Callable[..., Any]:
-    return lambda x, y: np.stack([part(x, y) for part in parts], axis=-1)
+def _declared(source: Source) -> SceneFile:
+    from pydantic import ValidationError
+
+    try:
+        return SceneFile.model_validate(source.data)
+    except ValidationError as error:
+        raise source.invalid(error) from None
 
 
-def _discretisation(source: _Source, table: Mapping[str, Any]) -> dict[str, Any]:
-    section = "discretisation"
-    _known(source, section, table, DISCRETISATION | {"exponent"})
-    options = {k: v for k, v in table.items() if k not in ("law", "exponent")}
-    _need(source, section, table, "spacing")
-    if "exponent" in table and table.get("law") != "cosine":
-        raise source.error(section, 'an exponent belongs to law = "cosine"', "exponent")
-    if "law" in table:
-        from solver import Cosine, Fourfold, TwoHarmonic, UniformShear
-
-        laws: dict[str, Callable[[], Any]] = {
-            "cosine": lambda: Cosine(table.get("exponent")),
-            "two-harmonic": TwoHarmonic,
-            "fourfold": Fourfold,
-            "uniform-shear": UniformShear,
-        }
-        if table["law"] not in laws:
-            message = f"law = {table['law']!r} is not one of {', '.join(laws)}"
-            raise source.error(section, message, "law")
-        options["law"] = laws[table["law"]]()
-    return options
+# ---- from the model to the solver's objects ---------------------------------------------
 
 
-def _region(source: _Source, table: Mapping[str, Any]) -> Region:
+def _scene(file: SceneFile, source: Source) -> Scene:
+    from solver import Scene
+
+    options = dict(file.discretisation)
+    law, exponent = options.pop("law"), options.pop("exponent")
+    with source.at("region"):
+        region = _region(file.region)
+    with source.at("material"):
+        material = _material(file.material)
+    supports, loads, cracks = [], [], []
+    for i, support in enumerate(file.support):
+        with source.at("support", i):
+            supports.append(_support(support))
+    for i, load in enumerate(file.load):
+        with source.at("load", i):
+            loads.append(_load(load))
+            # Whether such a load acts on such a body.
+            Scene(region, options["spacing"], material, loads=loads)
+    for i, crack in enumerate(file.crack):
+        with source.at("crack", i):
+            cracks.append(_crack(crack))
+    with source.at("discretisation"):
+        return Scene(
+            region=region,
+            material=material,
+            supports=supports,
+            loads=loads,
+            cracks=cracks,
+            law=_law(law, exponent),
+            **options,
+        )
+
+
+def _law(name: str | None, exponent: int | None) -> Any:
     import solver
 
-    shape = _kind(source, "region", table, "shape", REGIONS)
-    values = {k: v for k, v in table.items() if k != "shape"}
-    try:
-        region: Region = getattr(solver, shape)(**values)
-    except TypeError as error:
-        raise source.error("region", f"a {shape} needs other keys: {error}", "shape") from error
+    if name is None:
+        return None
+    laws: dict[str, Callable[[], Any]] = {
+        "cosine": lambda: solver.Cosine(exponent),
+        "two-harmonic": solver.TwoHarmonic,
+        "fourfold": solver.Fourfold,
+        "uniform-shear": solver.UniformShear,
+    }
+    return laws[name]()
+
+
+def _region(table: Any) -> Region:
+    import solver
+
+    values = {k: tuple(v) if k == "centre" else v for k, v in table if k != "shape"}
+    region: Region = getattr(solver, table.shape)(**values)
     return region
 
 
-def _material(source: _Source, table: Mapping[str, Any]) -> Any:
+def _material(table: Any) -> Any:
     from solver import ConductivityTensor, ElasticTensor
 
-    kind = _kind(source, "material", table, "kind", MATERIALS)
-    values = {k: v for k, v in table.items() if k not in ("kind", "angle_degrees")}
-    material: Any
-    if kind == "conductivity":
-        material = ConductivityTensor(_need(source, "material", table, "tensor"))
-    elif kind == "elastic":
-        material = ElasticTensor(_need(source, "material", table, "voigt"))
+    if table.kind == "conductivity":
+        material: Any = ConductivityTensor(table.tensor)
+    elif table.kind == "elastic":
+        material = ElasticTensor(table.voigt)
     else:
-        for key in sorted(MATERIALS[kind] - {"plane", "angle_degrees"}):
-            _need(source, "material", table, key)
-        material = getattr(ElasticTensor, kind)(**values)
-    angle = float(table.get("angle_degrees", 0.0))
+        values = {k: v for k, v in table if k not in ("kind", "angle_degrees") and v is not None}
+        material = getattr(ElasticTensor, table.kind)(**values)
+    angle = getattr(table, "angle_degrees", 0.0)
     return material.rotated(np.radians(angle)) if angle else material
 
 
-def _support(source: _Source, section: str, table: Mapping[str, Any]) -> Support:
+def _support(table: model.Support) -> Support:
     from solver import Support
 
-    _known(source, section, table, VALUES | {"layer_cells", "where"})
-    values = {k: _formula(source, section, k, table[k]) for k in VALUES if k in table}
-    if ("layer_cells" in table) == ("where" in table):
-        raise source.error(section, "needs either layer_cells or where")
-    if "layer_cells" in table:
-        return Support.layer(cells=table["layer_cells"], **values)
-    return Support.where(_formula(source, section, "where", table["where"]), **values)
+    if table.layer_cells is not None:
+        return Support.layer(cells=table.layer_cells, **table.values)
+    assert table.where is not None
+    return Support.where(table.where, **table.values)
 
 
-def _load(source: _Source, section: str, table: Mapping[str, Any]) -> Load:
+def _load(table: Any) -> Load:
     from solver import Load
 
-    kind = _kind(source, section, table, "kind", LOADS)
-    value = _formula(source, section, "value", _need(source, section, table, "value"))
-    if kind == "traction":
-        ends = [tuple(_need(source, section, table, key)) for key in ("start", "end")]
-        return Load.traction(value, ends[0], ends[1])
-    where = table.get("where")
-    selected = _formula(source, section, "where", where) if where is not None else None
-    load: Load = getattr(Load, kind)(value, where=selected)
+    if table.kind == "traction":
+        return Load.traction(table.value, tuple(table.start), tuple(table.end))
+    load: Load = getattr(Load, table.kind)(table.value, where=table.where)
     return load
 
 
-def _crack(source: _Source, section: str, table: Mapping[str, Any]) -> Crack:
+def _crack(table: model.Crack) -> Crack:
     from solver import Crack
 
-    _known(source, section, table, {"start", "end"})
-    start, end = (tuple(_need(source, section, table, key)) for key in ("start", "end"))
-    return Crack(start, end)
+    return Crack(tuple(table.start), tuple(table.end))  # type: ignore[arg-type]
+
+
+# ---- what can be known without solving --------------------------------------------------
+
+
+def _afford(
+    file: SceneFile, scene: Scene, source: Source, memory: float | None, seconds: float
+) -> None:
+    """Refuse what would take too much memory or time."""
+    x0, y0, x1, y1 = scene.region.bounds
+    if not scene.m >= 1:
+        raise source.error(
+            ("discretisation", "m"), f"the horizon is at least one cell, not {scene.m:g}"
+        )
+    cost = budget.estimate(
+        x1 - x0,
+        y1 - y0,
+        scene.spacing,
+        float(scene.m),
+        len(scene.physics.unknowns),
+        scene.surface,
+        sum(hypot(c.end[0] - c.start[0], c.end[1] - c.start[1]) for c in file.crack),
+        file.fracture is not None,
+    )
+    free = budget.SHARE * budget.free_memory() if memory is None else memory
+    if too_much := cost.refusal(free, seconds):
+        # Whichever of the two numbers is the unusual one.
+        key = "m" if cost.family > cost.particles else "spacing"
+        raise source.error(("discretisation", key), f"{too_much}: ask for less or allow more")
+
+
+def _try_on_lattice(file: SceneFile, scene: Scene, source: Source) -> None:
+    """Evaluate conditions and values where they will be needed."""
+    from solver.geometry import Lattice, Outline, select
+    from solver.problem.conditions import evaluate
+
+    with source.at("discretisation"):
+        family = scene.family()
+    with source.at("discretisation", "spacing"):
+        lattice = Lattice(scene.region, scene.spacing, family.reach)
+    for i, (table, support) in enumerate(zip(file.support, scene.supports, strict=True)):
+        key = "where" if table.layer_cells is None else "layer_cells"
+        with source.at("support", i):
+            support.columns(scene.physics)
+        with source.at("support", i, key):
+            chosen = support.select(lattice)
+            if not chosen.any():
+                raise ValueError("the support holds no particle")
+        for name, value in table.values.items():
+            with source.at("support", i, name):
+                width = 2 if name == "displacement" else 1
+                evaluate(value, lattice.points[chosen], width, "it")
+    outline = None
+    for i, (entry, load) in enumerate(zip(file.load, scene.loads, strict=True)):
+        where = getattr(entry, "where", None)
+        if where is not None and load.density is not None:
+            with source.at("load", i, "where"):
+                if not select(lattice, where).any():
+                    raise ValueError("the load acts on no particle")
+        if load.density is not None:
+            with source.at("load", i, "value"):
+                load.density(lattice)
+        if load.edge is not None:
+            if outline is None:
+                with source.at("crack"):
+                    outline = Outline.of(scene.region, scene.cracks, scene.spacing)
+            with source.at("load", i):
+                load.edge(outline)
+    if file.fracture is not None and file.fracture.no_fail is not None:
+        with source.at("fracture", "no_fail"):
+            select(lattice, file.fracture.no_fail)

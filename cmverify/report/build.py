@@ -6,6 +6,7 @@ import base64
 import io
 import math
 import multiprocessing
+import os
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
@@ -16,7 +17,9 @@ from typing import TYPE_CHECKING, Any
 from cmverify.case import Case, LinePlot, Measurement, nothing_to_compile
 from cmverify.judge import precision
 from cmverify.report.summary import CaseResult, Row, RunInfo, all_passed, table
+from cmverify.run.lifeline import hold
 from cmverify.run.results import write_text
+from cmverify.run.threads import child_environment
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -52,11 +55,12 @@ def build(summary: Sequence[CaseResult], info: RunInfo, folder: Path) -> Path:
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     environment.filters.update(number=number, seconds=seconds, count=count, mathtext=mathtext)
     resources = files("cmverify.report")
-    template = environment.from_string((resources / "template.html").read_text())
+    template = environment.from_string((resources / "template.html").read_text(encoding="utf-8"))
     page = template.render(
-        css=(resources / "style.css").read_text(),
+        css=(resources / "style.css").read_text(encoding="utf-8"),
         info=info,
         passed=all_passed(summary),
+        missing=[task for result in summary for task in result.missing],
         verdicts=[v for result in summary for v in result.verdicts],
         sections=_sections(summary, folder, info.jobs),
         stability=(folder / "stability.html").is_file(),
@@ -71,12 +75,29 @@ def _sections(summary: Sequence[CaseResult], folder: Path, jobs: int) -> list[di
     if min(jobs, len(summary)) < 2:
         drawn = [_draw(result, folder) for result in summary]
     else:
-        # Spawned and not forked: the parent may have threads. Functions of a case stay here.
-        context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(min(jobs, len(summary)), mp_context=context) as pool:
-            bare = [replace(result, case=_without_functions(result.case)) for result in summary]
-            drawn = list(pool.map(_draw, bare, [folder] * len(bare)))
+        drawn = _draw_in_processes(summary, folder, min(jobs, len(summary)))
     return [_section(result, *parts) for result, parts in zip(summary, drawn, strict=True)]
+
+
+def _draw_in_processes(
+    summary: Sequence[CaseResult], folder: Path, jobs: int
+) -> list[tuple[list[Picture], list[str]]]:
+    # Spawned and not forked: the parent may have threads. Functions of a case stay here.
+    context = multiprocessing.get_context("spawn")
+    bare = [replace(result, case=_without_functions(result.case)) for result in summary]
+    with child_environment():
+        pool = ProcessPoolExecutor(
+            jobs, mp_context=context, initializer=hold, initargs=(os.getpid(),)
+        )
+        try:
+            drawn = list(pool.map(_draw, bare, [folder] * len(bare)))
+        except BaseException:
+            for child in multiprocessing.active_children():
+                child.kill()
+            raise
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+    return drawn
 
 
 def _without_functions(case: Case) -> Case:

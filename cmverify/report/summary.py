@@ -15,12 +15,16 @@ from cmverify.judge.convergence import observed_orders
 from cmverify.judge.verdict import Verdict, judge, unjudged
 from cmverify.run import results
 
+#: Kind of failure of what was not measured, or whose record is gone.
+MISSING = "NotMeasured"
+
 
 @dataclass(frozen=True)
 class RunInfo:
     """How a run was made, so that it can be made again.
 
-    `measured` lists its (case, method, resolution): its folder may hold records of others.
+    `measured` lists its (case, method, resolution), planned ones included: its folder may hold
+    records of others. `finished` is false until all of them were measured.
     """
 
     level: str
@@ -31,6 +35,7 @@ class RunInfo:
     wall_seconds: float
     environment: dict[str, Any] = field(default_factory=dict)
     measured: list[list[Any]] = field(default_factory=list)
+    finished: bool = True
 
 
 @dataclass(frozen=True)
@@ -53,9 +58,19 @@ class CaseResult:
         return found
 
     @property
+    def missing(self) -> list[str]:
+        """What belongs to the run and has no usable record, as "method 1/n"."""
+        return [
+            f"{r.case} {r.method} {self.case.length}/{r.resolution}"
+            for r in self.records
+            if isinstance(r.outcome, Failed) and r.outcome.error == MISSING
+        ]
+
+    @property
     def passed(self) -> bool:
         """Whether there are verdicts and all of them hold."""
-        return bool(self.verdicts) and all(v.passed for v in self.verdicts)
+        done = bool(self.verdicts) and not self.missing
+        return done and all(v.passed for v in self.verdicts)
 
     @property
     def tightest(self) -> Verdict | None:
@@ -81,6 +96,22 @@ def summarise(cases: Iterable[Case], records: Iterable[results.Record]) -> list[
         bare = CaseResult(case, own, (), ())
         verdicts = judge(case, bare.outcomes)
         found.append(CaseResult(case, own, tuple(verdicts), tuple(unjudged(case, verdicts))))
+    return found
+
+
+def complete(info: RunInfo, folder: Path) -> list[results.Record]:
+    """The records of a run, in its order; a missing or damaged one is a failure that says so."""
+    found = []
+    for case, method, resolution in info.measured:
+        path = results.stem(folder, case, method, resolution).with_suffix(".json")
+        try:
+            if not path.is_file():
+                raise ValueError("there is no record of it")
+            found.append(results.load(path))
+        except ValueError as error:
+            message = f"{error}; measure it with: {info.command} --resume"
+            outcome = Failed(MISSING, message, "")
+            found.append(results.Record(case, method, resolution, outcome, info.threads, 0.0, ""))
     return found
 
 
@@ -172,8 +203,14 @@ def save_info(info: RunInfo, folder: Path) -> None:
 def load_info(folder: Path) -> RunInfo:
     """Read run.json; ValueError if the folder is not one of a run."""
     try:
-        return RunInfo(**json.loads((folder / "run.json").read_text()))
-    except (OSError, TypeError, json.JSONDecodeError) as error:
+        info = RunInfo(**json.loads((folder / "run.json").read_text(encoding="utf-8")))
+        if not all(
+            isinstance(case, str) and isinstance(method, str) and isinstance(n, int)
+            for case, method, n in info.measured
+        ):
+            raise ValueError("its list of measurements is damaged")
+        return info
+    except (OSError, TypeError, ValueError) as error:
         raise ValueError(
             f"{folder} holds no finished run (run.json: {error}); "
             f"make one with: cmverify run --out {folder}"

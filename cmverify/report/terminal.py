@@ -52,10 +52,22 @@ def print_verdicts(console: Console, summary: Sequence[CaseResult]) -> None:
             ),
             highlight=False,
         )
+    print_missing(console, summary)
     if all_passed(summary):
         console.print(f"[bold green]All {len(verdicts)} checks hold.[/]")
     else:
         console.print(f"[bold red]{len(failed)} of {len(verdicts)} checks fail.[/]")
+
+
+def print_missing(console: Console, summary: Sequence[CaseResult]) -> None:
+    """What belongs to the run and has no usable record, if anything."""
+    missing = [task for result in summary for task in result.missing]
+    if missing:
+        are = "measurement is" if len(missing) == 1 else "measurements are"
+        console.print(
+            f"[bold red]{len(missing)} {are} missing:[/] {escape(', '.join(missing))}",
+            highlight=False,
+        )
 
 
 def order_lines(summary: Sequence[CaseResult]) -> list[str]:

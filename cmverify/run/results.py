@@ -7,13 +7,16 @@ exists is complete, whatever killed the run.
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 import math
 import os
 import tempfile
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from dataclasses import fields as fields_of
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +24,9 @@ import numpy as np
 
 from cmverify.case import Curve, Failed, Field, FieldSet, LinePlot, Measurement, Outcome
 
-FORMAT = 1
+FORMAT = 2
+# Files that decide what is measured: code and stored references.
+_MEASURES = {".py", ".npz", ".json"}
 CURVE = ("abscissa", "computed", "reference", "reference_abscissa")
 
 
@@ -50,24 +55,30 @@ class Record:
         return isinstance(self.outcome, Failed)
 
 
+@cache
 def source_fingerprint() -> str:
-    """Hash of every Python source of the three packages and of the numerical libraries' versions.
+    """Hash of the three packages' sources and stored references, and of the libraries' versions.
 
     A result measured by other code must not be taken for a result of this code: `--resume` reuses
     a record only if the fingerprints agree.
     """
-    from importlib.metadata import version
+    from importlib.metadata import PackageNotFoundError, version
     from importlib.util import find_spec
 
     digest = hashlib.sha256()
     for package in ("solver", "references", "cmverify"):
         spec = find_spec(package)
         for place in (spec.submodule_search_locations or []) if spec else []:
-            for path in sorted(Path(place).rglob("*.py")):
-                digest.update(path.relative_to(place).as_posix().encode())
-                digest.update(path.read_bytes())
+            for path in sorted(Path(place).rglob("*")):
+                if path.suffix in _MEASURES and path.is_file():
+                    digest.update(path.relative_to(place).as_posix().encode())
+                    digest.update(path.read_bytes())
     for library in ("numpy", "scipy", "numba", "scikit-fem", "gmsh"):
-        digest.update(f"{library}={version(library)}".encode())
+        try:
+            found = version(library)
+        except PackageNotFoundError:  # a copy that no installer knows
+            found = "?"
+        digest.update(f"{library}={found}".encode())
     return digest.hexdigest()[:16]
 
 
@@ -93,7 +104,11 @@ def save(record: Record, folder: Path) -> Path:
     else:
         data["measurement"] = _describe(record.outcome, arrays)
     if arrays:
-        _replace(base.with_suffix(".npz"), lambda stream: np.savez_compressed(stream, **arrays))
+        archive = io.BytesIO()
+        np.savez_compressed(archive, **arrays)
+        data["arrays_sha256"] = _sha256(archive.getvalue())
+        _replace(base.with_suffix(".npz"), lambda stream: stream.write(archive.getvalue()))
+    data["record_sha256"] = _record_sha256(data)
     text = json.dumps(_plain(data), indent=1, allow_nan=False)
     _replace(base.with_suffix(".json"), lambda stream: stream.write(text.encode()))
     return base.with_suffix(".json")
@@ -108,24 +123,49 @@ def load(path: Path) -> Record:
         If the file is not a record of this format.
     """
     try:
-        data = json.loads(path.read_text())
+        data = json.loads(path.read_text(encoding="utf-8"))
         if data["format"] != FORMAT:
             raise ValueError(f"format {data['format']}, not {FORMAT}")
+        if data["record_sha256"] != _record_sha256(data):
+            raise ValueError("it was altered")
         outcome: Outcome
         if "failed" in data:
             outcome = Failed(**data["failed"])
         else:
-            outcome = _restore(data["measurement"], path.with_suffix(".npz"))
+            outcome = _restore(data["measurement"], _arrays(path, data))
         keys = ("case", "method", "resolution", "threads", "wall_seconds", "fingerprint")
         return Record(outcome=outcome, **{key: data[key] for key in keys})
-    except (KeyError, TypeError, OSError, json.JSONDecodeError, ValueError) as error:
-        raise ValueError(f"{path} is not a usable result record: {error}") from error
+    except Exception as error:
+        # Damaged files make json, zipfile, zlib and NumPy raise a dozen kinds of errors.
+        said = " ".join(str(error).split()) or type(error).__name__
+        raise ValueError(f"{path} is not a usable result record: {said}") from error
+
+
+def _arrays(path: Path, data: dict[str, Any]) -> dict[str, Any]:
+    if "arrays_sha256" not in data:
+        return {}
+    archive = path.with_suffix(".npz")
+    content = archive.read_bytes()
+    if _sha256(content) != data["arrays_sha256"]:
+        raise ValueError(f"{archive.name} is damaged or of another run")
+    with np.load(io.BytesIO(content), allow_pickle=False) as found:
+        return {key: found[key] for key in found.files}
+
+
+def _sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def _record_sha256(data: dict[str, Any]) -> str:
+    rest = {key: value for key, value in data.items() if key != "record_sha256"}
+    return _sha256(json.dumps(_plain(rest), sort_keys=True).encode())
 
 
 def load_all(folder: Path) -> Iterator[Record]:
-    """Every record below a run's folder, in a fixed order."""
+    """Every usable record below a run's folder, in a fixed order."""
     for path in sorted((folder / "results").rglob("*.json")):
-        yield load(path)
+        with suppress(ValueError):
+            yield load(path)
 
 
 def write_text(path: Path, text: str) -> None:
@@ -186,11 +226,7 @@ def _describe(m: Measurement, arrays: dict[str, np.ndarray]) -> dict[str, Any]:
     return data
 
 
-def _restore(data: dict[str, Any], archive: Path) -> Measurement:
-    arrays: dict[str, Any] = {}
-    if "fields" in data or data["lines"]:
-        with np.load(archive) as content:
-            arrays = {key: content[key] for key in content.files}
+def _restore(data: dict[str, Any], arrays: dict[str, Any]) -> Measurement:
     fields = None
     if "fields" in data:
         items = {

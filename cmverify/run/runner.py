@@ -3,7 +3,7 @@
 Workers are started afresh (not forked), because the thread limits of Numba and BLAS are read at
 import. Each worker takes one task after another over a pipe and writes every record to disk
 before it answers. A worker that dies (a crash in a compiled library, the kernel's out-of-memory
-killer) costs its task a FAIL and is replaced.
+killer) costs its task a FAIL and is replaced. Workers end with this process, however it ends.
 """
 
 from __future__ import annotations
@@ -12,18 +12,26 @@ import multiprocessing
 import os
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 
 from cmverify.case import Case, Failed, Level
 from cmverify.run import results
-from cmverify.run.threads import thread_environment, threads_per_worker
+from cmverify.run.lifeline import end_group
+from cmverify.run.threads import child_environment, thread_environment, threads_per_worker
 from cmverify.run.worker import serve
 
 Task = tuple[str, str, int]
+
+# Longest wait for an answer (s) before looking round.
+_LOOK_ROUND = 3600.0
+
+
+class UnwritableError(OSError):
+    """A record could not be written (a full disk): the run stops, what is finished stays."""
 
 
 @dataclass(frozen=True)
@@ -71,10 +79,14 @@ def run(
         Told of every `Event`, in this process.
     registry : str
         Module in which workers look cases up by name.
+
+    Raises
+    ------
+    UnwritableError
+        If a record cannot be written.
     """
     threads = threads_per_worker(jobs)
-    chosen = list(cases)
-    tasks = [(c.name, m.name, n) for c in chosen for m, n in c.plan(level)]
+    tasks = plan(cases, level)
     todo: deque[Task] = deque()
     current = results.source_fingerprint()
     for task in tasks:
@@ -87,6 +99,11 @@ def run(
     todo = deque(sorted(todo, key=lambda task: -task[2]))
     _drain(todo, folder, min(jobs, max(len(todo), 1)), threads, timeout, listen, registry)
     return [results.load(results.stem(folder, *task).with_suffix(".json")) for task in tasks]
+
+
+def plan(cases: Iterable[Case], level: Level) -> list[Task]:
+    """Everything that a level measures, case by case."""
+    return [(c.name, m.name, n) for c in cases for m, n in c.plan(level)]
 
 
 def _reusable(folder: Path, task: Task, threads: int, fingerprint: str) -> bool:
@@ -120,7 +137,8 @@ def _drain(
                     _assign(worker, todo.popleft(), listen)
             busy = [worker for worker in workers if worker.task]
             patience = min(worker.since for worker in busy) + timeout - time.perf_counter()
-            ready = wait([worker.pipe for worker in busy], max(patience, 0.0))
+            patience = min(max(patience, 0.0), _LOOK_ROUND)
+            ready = wait([worker.pipe for worker in busy], patience)
             for worker in busy:
                 late = time.perf_counter() - worker.since > timeout
                 if worker.pipe in ready:
@@ -131,16 +149,20 @@ def _drain(
                         _give_up(worker, folder, threads, timeout, listen)
                 if not alive:
                     workers.remove(worker)
-    finally:
+    except BaseException:
         for worker in workers:
-            _stop(worker)
+            _end(worker)
+        raise
+    for worker in workers:
+        _stop(worker)
 
 
 def _start(folder: Path, threads: int, registry: str) -> _Worker:
     context = multiprocessing.get_context("spawn")
     here, there = context.Pipe()
-    with _environment(thread_environment(threads)):
-        process = context.Process(target=serve, args=(there, registry, folder, threads))
+    with child_environment(thread_environment(threads)):
+        given = (there, registry, folder, threads, os.getpid())
+        process = context.Process(target=serve, args=given)
         process.daemon = True
         process.start()
     there.close()
@@ -160,13 +182,15 @@ def _collect(worker: _Worker, folder: Path, threads: int, listen: Callable[[Even
     assert task is not None
     worker.task = None
     try:
-        _, seconds, failure = worker.pipe.recv()
+        _, seconds, failure, unwritten = worker.pipe.recv()
     except (EOFError, ConnectionResetError):
         worker.process.join(timeout=10)
         seconds = time.perf_counter() - worker.since
         failure = f"the worker process died with exit code {worker.process.exitcode}"
         _fail(task, Failed("WorkerDied", failure), folder, threads, seconds, listen)
         return False
+    if unwritten is not None:
+        raise UnwritableError(f"the result of {task[0]} {task[1]} cannot be written: {unwritten}")
     listen(Event("failed" if failure else "finished", task, seconds, failure))
     return True
 
@@ -177,9 +201,7 @@ def _give_up(
     """End a worker whose task takes too long."""
     task = worker.task
     assert task is not None
-    worker.process.kill()
-    worker.process.join(timeout=10)
-    worker.pipe.close()
+    _end(worker)
     failure = f"no result after {timeout:g} s"
     _fail(task, Failed("TimeoutError", failure), folder, threads, timeout, listen)
 
@@ -194,31 +216,29 @@ def _fail(
 ) -> None:
     """Record a failure on behalf of a worker that cannot."""
     fingerprint = results.source_fingerprint()
-    results.save(results.Record(*task, outcome, threads, seconds, fingerprint), folder)
+    try:
+        results.save(results.Record(*task, outcome, threads, seconds, fingerprint), folder)
+    except OSError as error:
+        said = error.strerror or str(error)
+        raise UnwritableError(
+            f"the result of {task[0]} {task[1]} cannot be written: {said}"
+        ) from error
     listen(Event("failed", task, seconds, outcome.message))
 
 
 def _stop(worker: _Worker) -> None:
-    try:
-        worker.pipe.send(None)
-        worker.process.join(timeout=0.2 if worker.task else 5)
-    except (BrokenPipeError, OSError):
-        pass
+    """Let an idle worker go; end one that is at work, with all that it has started."""
+    if worker.task is None:
+        with suppress(BrokenPipeError, OSError):
+            worker.pipe.send(None)
+            worker.process.join(timeout=5)
+    _end(worker)
+
+
+def _end(worker: _Worker) -> None:
     if worker.process.is_alive():
-        worker.process.terminate()
+        if worker.process.pid is not None:
+            end_group(worker.process.pid)
+        worker.process.kill()
+        worker.process.join(timeout=10)
     worker.pipe.close()
-
-
-@contextmanager
-def _environment(variables: dict[str, str]) -> Iterator[None]:
-    """Environment variables for the child that is started inside the block."""
-    before = {name: os.environ.get(name) for name in variables}
-    os.environ.update(variables)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value

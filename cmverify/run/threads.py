@@ -8,6 +8,8 @@ late.
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 
 #: Environment variables of every threaded library in use.
 VARIABLES = (
@@ -39,6 +41,26 @@ def threads_per_worker(jobs: int) -> int:
 def thread_environment(threads: int) -> dict[str, str]:
     """Environment variables that limit every library to `threads`."""
     return dict.fromkeys(VARIABLES, str(threads))
+
+
+@contextmanager
+def child_environment(variables: Mapping[str, str] | None = None) -> Iterator[None]:
+    """Environment of the children that are started inside the block.
+
+    Besides the given variables: a file of the working folder that is called as one of Python's
+    modules (random.py) is not to be imported instead of it.
+    """
+    wanted = {"PYTHONSAFEPATH": "1", **(variables or {})}
+    before = {name: os.environ.get(name) for name in wanted}
+    os.environ.update(wanted)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
 
 
 def _cgroup_quota() -> int | None:

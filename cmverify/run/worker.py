@@ -11,6 +11,7 @@ from weakref import WeakSet
 
 from cmverify.case import Case, Failed, Measurement, Method, Outcome
 from cmverify.run import results
+from cmverify.run.lifeline import hold
 
 _warm: WeakSet[Callable[[], None]] = WeakSet()
 
@@ -50,20 +51,33 @@ def record(
     return results.Record(case.name, method.name, resolution, outcome, threads, wall, fingerprint)
 
 
-def serve(connection: Connection, registry: str, folder: Path, threads: int) -> None:
+def serve(
+    connection: Connection, registry: str, folder: Path, threads: int, parent: int | None = None
+) -> None:
     """Body of a worker process: take (case, method, n), save the record, answer, repeat.
 
     `registry` is the dotted name of a module with `get(name) -> Case`; cases hold functions and
-    are looked up here instead of being sent.
+    are looked up here instead of being sent. `parent` is the process number of the run, which the
+    worker does not outlive. The answer is (task, seconds, message of a failure or None, what the
+    system said if the record could not be written or None).
     """
     from importlib import import_module
 
+    if parent is not None:
+        hold(parent)
     fingerprint = results.source_fingerprint()
     lookup = import_module(registry).get
-    while (task := connection.recv()) is not None:
-        name, method_name, resolution = task
-        case = lookup(name)
-        done = record(case, case.method(method_name), resolution, threads, fingerprint)
-        results.save(done, folder)
-        summary = done.outcome.message if isinstance(done.outcome, Failed) else None
-        connection.send((task, done.wall_seconds, summary))
+    try:
+        while (task := connection.recv()) is not None:
+            name, method_name, resolution = task
+            case = lookup(name)
+            done = record(case, case.method(method_name), resolution, threads, fingerprint)
+            summary = done.outcome.message if isinstance(done.outcome, Failed) else None
+            unwritten = None
+            try:
+                results.save(done, folder)
+            except OSError as error:
+                unwritten = error.strerror or str(error)
+            connection.send((task, done.wall_seconds, summary, unwritten))
+    except (EOFError, BrokenPipeError):
+        pass  # the run has ended without a word: there is nobody to tell

@@ -12,12 +12,14 @@ from typing import Any
 
 import numba as nb
 
+from ..compiled import kernel
+from ..material import strains
 from ..material.strains import sheared, stretched
 
-_OPTIONS: Any = {"parallel": True, "cache": True, "fastmath": {"contract", "nsz"}, "nogil": True}
+_OPTIONS: Any = {"parallel": True, "fastmath": {"contract", "nsz"}, "nogil": True}
 
 
-@nb.njit(**_OPTIONS)
+@kernel(uses=(strains.__file__,), **_OPTIONS)
 def bond_energies(grid, segments, steps, geometry, factors, tension, out):
     """Weighted energy f (a s² + b γ²) of every bond, zero where tension is asked for and s < 0.
 
@@ -51,7 +53,7 @@ def bond_energies(grid, segments, steps, geometry, factors, tension, out):
                 row[first + j] = 0.0 if tension and axial < 0.0 else value
 
 
-@nb.njit(**_OPTIONS)
+@kernel(uses=(strains.__file__,), **_OPTIONS)
 def bond_work(grid, other, segments, steps, geometry, factors, out):
     """Σ f (a s s' + b γ γ') over the bonds of each segment, for two fields.
 

@@ -23,7 +23,8 @@ import numpy as np
 
 from ..arrays import Array
 
-_INLINE: Any = {"inline": "always", "cache": True}
+# Inlined where they are used, so that nothing of them is kept on disk.
+_INLINE: Any = {"inline": "always"}
 
 
 @nb.njit(**_INLINE)

@@ -31,16 +31,18 @@ os.environ.setdefault("GOMP_SPINCOUNT", "1500")
 import numba as nb
 import numpy as np
 
+from ..compiled import kernel
+
 # OpenMP has the cheapest fork and join of Numba's layers; the others are fallbacks.
 setattr(nb.config, "THREADING_LAYER_PRIORITY", ["omp", "tbb", "workqueue"])  # noqa: B010
 
 _U = np.uint64
 # Contraction to fused multiply-adds only: sums keep their order.
 _FAST = {"contract", "nsz"}
-_OPTIONS: Any = {"parallel": True, "cache": True, "fastmath": _FAST, "nogil": True}
+_OPTIONS: Any = {"parallel": True, "fastmath": _FAST, "nogil": True}
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def elastic_product(grid, segments, steps, blocks, bulk, diagonal, factors, out):
     """Operator rows with three unknowns.
 
@@ -108,7 +110,7 @@ def elastic_product(grid, segments, steps, blocks, bulk, diagonal, factors, out)
                     mo[first + j] += e * (r1 + r2) - tx * (x1 - x2) - ty * (y1 - y2)
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def central_product(grid, segments, steps, blocks, bulk, diagonal, factors, out):
     """Operator rows of an elastic body in which no bond resists shear: two unknowns.
 
@@ -149,7 +151,7 @@ def central_product(grid, segments, steps, blocks, bulk, diagonal, factors, out)
                     fy[first + j] -= b * sx + c * sy
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def conductive_product(grid, segments, steps, blocks, bulk, diagonal, factors, out):
     """Operator rows of conduction: one unknown.
 
@@ -183,7 +185,7 @@ def conductive_product(grid, segments, steps, blocks, bulk, diagonal, factors, o
                     )
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def scatter(segments, values, grid):
     """Write packed values (components, n) to the padded grid (components, cells)."""
     for s in nb.prange(segments.shape[0]):
@@ -194,7 +196,7 @@ def scatter(segments, values, grid):
                 row[cell + j] = packed[first + j]
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def block_scale(segments, bulk, own, residual, out):
     """Apply a block-diagonal matrix: one block for the bulk, own ones for the other particles.
 
@@ -225,7 +227,7 @@ def block_scale(segments, bulk, own, residual, out):
                         target[first + j] += entries[column + j] * source[first + j]
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def weighted_rows(rows, pointer, index, weight, values, out):
     """Some rows of a sparse matrix (compressed rows) times each component of (c, columns)."""
     for r in nb.prange(rows.size):

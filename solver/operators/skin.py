@@ -25,14 +25,14 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import numba as nb
 import numpy as np
 
 from ..arrays import Array, Indices
+from ..compiled import kernel
 from ..geometry import Outline
 from ..material import Family, Moduli, effective_tensor
 
-_OPTIONS: Any = {"cache": True, "nogil": True}
+_OPTIONS: Any = {"nogil": True}
 
 # Standard deviation of the bump Φ, cells: the trapezoidal rule's error for lines one cell apart is
 # exp(−2 π² 1.2²), one in 10¹².
@@ -192,7 +192,7 @@ def _chains(outline: Outline, edges: Indices, reach: float) -> tuple[Array, Indi
     return points, length
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def _line(
     centre: Array, chain: Array, count: int, point: Array, direction: Array, sigma: float
 ) -> float:
@@ -255,7 +255,7 @@ def _line(
     return factor * total
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def _lack(
     centres: Array,
     chains: Array,

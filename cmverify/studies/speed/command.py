@@ -73,7 +73,8 @@ def speed(
         "tables": tables,
         "verdicts": [vars(v) for v in found],
     }
-    (out / "speed.json").write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n")
+    text = json.dumps(document, indent=1, ensure_ascii=False) + "\n"
+    (out / "speed.json").write_text(text, encoding="utf-8")
     from cmverify.studies.speed.figure import draw
 
     draw(tables, out / "speed.png")

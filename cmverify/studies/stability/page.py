@@ -65,8 +65,10 @@ def write(
             pictures.append({"uri": uri, **about})
         drawn.append({"title": section.title, "text": section.text, "pictures": pictures})
     resources = files("cmverify.report")
-    page = environment.from_string((resources / "stability.html").read_text()).render(
-        css=(resources / "style.css").read_text(),
+    page = environment.from_string(
+        (resources / "stability.html").read_text(encoding="utf-8")
+    ).render(
+        css=(resources / "style.css").read_text(encoding="utf-8"),
         verdicts=verdicts,
         confirmed=all_confirmed(verdicts),
         sections=drawn,

@@ -148,9 +148,9 @@ def test_scenes_without_a_fracture_table_have_no_plan(tmp_path):
     ("table", "line", "message"),
     [
         ("G = 1.0", 2, "did you mean 'G"),
-        ("control = 'fixed'", 1, "'G1' .* is missing"),
-        ("G1 = -1.0", 1, "must be positive"),
-        ("G1 = 1.0\nstop = -2.0", 1, "stops at"),
+        ("control = 'fixed'", 1, "'G1' is missing"),
+        ("G1 = -1.0", 2, "G1: must be positive"),
+        ("G1 = 1.0\nstart = 3.0\nstop = 2.0", 4, "stops at"),
         ("G1 = 1.0\nno_fail = 'q > 1'", 3, "q"),
     ],
 )

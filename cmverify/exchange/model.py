@@ -1,0 +1,339 @@
+"""What a scene file may say, declared once: tables, keys, kinds of values and their meaning.
+
+The same declaration checks files and gives the JSON schema (`SceneFile.model_json_schema()`).
+What the physics allows (a positive tensor, a support that holds something) is checked by the
+solver's objects that `scene_file` builds from it.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StrictBool, model_validator
+from pydantic_core import PydanticCustomError
+
+from cmverify.exchange.values import (
+    Condition,
+    Count,
+    FileName,
+    Levels,
+    Matrix2,
+    Matrix3,
+    NotNegative,
+    Number,
+    Point,
+    Points,
+    Positive,
+    Scalar,
+    Triple,
+    Vector,
+)
+
+
+def wrong(key: str, message: str) -> PydanticCustomError:
+    """An error of a whole table that points to one of its keys."""
+    # The message is a template: what it says is not.
+    return PydanticCustomError("scene", "{said}", {"said": message, "key": key})
+
+
+class Table(BaseModel):
+    """A table of a scene file: no keys but those declared."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known(cls, data: Any) -> Any:
+        if not isinstance(data, Mapping):
+            raise ValueError("must be a table of keys and values")
+        for key in data:
+            if key not in cls.model_fields:
+                near = difflib.get_close_matches(key, cls.model_fields, n=1, cutoff=0.5)
+                known = ", ".join(sorted(cls.model_fields))
+                hint = f"did you mean {near[0]!r}?" if near else f"known: {known}"
+                raise wrong(key, f"unknown key {key!r}; {hint}")
+        return data
+
+
+# ---- the body ---------------------------------------------------------------------------
+
+
+class Disc(Table):
+    """A disc."""
+
+    shape: Literal["disc"]
+    radius: Positive = Field(description="m")
+    centre: Point = Field(default=[0.0, 0.0], description="m")
+
+
+class Rectangle(Table):
+    """A rectangle with sides along the axes."""
+
+    shape: Literal["rectangle"]
+    width: Positive = Field(description="m")
+    height: Positive = Field(description="m")
+    centre: Point = Field(default=[0.0, 0.0], description="m")
+
+
+class Polygon(Table):
+    """A simple polygon."""
+
+    shape: Literal["polygon"]
+    vertices: Points = Field(description="Corners in turn, m")
+
+
+Region = Annotated[Disc | Rectangle | Polygon, Field(discriminator="shape")]
+
+
+class Discretisation(Table):
+    """Lattice, bonds and their moduli."""
+
+    spacing: Positive = Field(description="Grid spacing, m")
+    m: Positive = Field(default=5.0, description="Horizon in cells, at least 1")
+    calibration: Literal["continuum", "lattice", "positive"] = "lattice"
+    area_rule: Literal["full", "partial", "exact"] = "partial"
+    influence: Literal["constant", "conical", "gaussian"] = "constant"
+    surface: Literal["none", "volume", "extrapolated"] = "volume"
+    law: Literal["cosine", "two-harmonic", "fourfold", "uniform-shear"] | None = Field(
+        default=None, description="How bond moduli depend on direction"
+    )
+    exponent: Count | None = Field(default=None, description='Of law = "cosine"')
+
+    @model_validator(mode="after")
+    def _exponent(self) -> Discretisation:
+        if self.exponent is not None and self.law != "cosine":
+            raise wrong("exponent", 'an exponent belongs to law = "cosine"')
+        return self
+
+
+# ---- the material -----------------------------------------------------------------------
+
+
+class _Turned(Table):
+    angle_degrees: Number = Field(default=0.0, description="Turn anticlockwise")
+
+
+class Conductivity(_Turned):
+    """A conductor."""
+
+    kind: Literal["conductivity"]
+    tensor: Matrix2 = Field(description="Conductivity, W/(m K) or S/m")
+
+
+class Elastic(_Turned):
+    """An elastic solid by its plane stiffness."""
+
+    kind: Literal["elastic"]
+    voigt: Matrix3 = Field(description="[[C11, C12, C16], [C12, C22, C26], [C16, C26, C66]], Pa")
+
+
+class Isotropic(Table):
+    """An isotropic elastic solid."""
+
+    kind: Literal["isotropic"]
+    E: Positive = Field(description="Young's modulus, Pa")
+    nu: Number = Field(description="Poisson's ratio")
+    plane: Literal["stress", "strain"] = "stress"
+
+
+class Orthotropic(_Turned):
+    """An orthotropic elastic solid with its axes along x and y before it is turned."""
+
+    kind: Literal["orthotropic"]
+    E1: Positive = Field(description="Young's modulus along axis 1, Pa")
+    E2: Positive = Field(description="Young's modulus along axis 2, Pa")
+    G12: Positive = Field(description="Shear modulus, Pa")
+    nu12: Number = Field(description="Contraction along 2 over extension along 1")
+    plane: Literal["stress", "strain"] = "stress"
+    E3: Positive | None = Field(default=None, description="Pa, plane strain only")
+    nu13: Number | None = Field(default=None, description="Plane strain only")
+    nu23: Number | None = Field(default=None, description="Plane strain only")
+
+    @model_validator(mode="after")
+    def _third_axis(self) -> Orthotropic:
+        for key in ("E3", "nu13", "nu23"):
+            given = getattr(self, key) is not None
+            if given and self.plane == "stress":
+                raise wrong(key, f'{key} has no meaning in plane = "stress"')
+            if not given and self.plane == "strain":
+                raise wrong(
+                    "plane", f"the key {key!r} is missing: plane strain needs E3, nu13 and nu23"
+                )
+        return self
+
+
+Material = Annotated[Conductivity | Elastic | Isotropic | Orthotropic, Field(discriminator="kind")]
+
+
+# ---- what holds it and acts on it -------------------------------------------------------
+
+
+class Support(Table):
+    """Particles on which unknowns are prescribed."""
+
+    layer_cells: Positive | None = Field(default=None, description="Those nearer to the edge")
+    where: Condition | None = Field(default=None, description="Those for which this is true")
+    displacement: Vector | None = Field(default=None, description="m")
+    u1: Scalar | None = Field(default=None, description="m")
+    u2: Scalar | None = Field(default=None, description="m")
+    rotation: Scalar | None = Field(default=None, description="rad")
+    temperature: Scalar | None = Field(default=None, description="K or V")
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """What is prescribed."""
+        names = ("displacement", "u1", "u2", "rotation", "temperature")
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+
+    @model_validator(mode="after")
+    def _complete(self) -> Support:
+        if (self.layer_cells is None) == (self.where is None):
+            raise wrong("where", "needs either layer_cells or where")
+        if not self.values:
+            raise wrong(
+                "", "prescribes nothing: give displacement, u1, u2, rotation or temperature"
+            )
+        for key in ("u1", "u2"):
+            if "displacement" in self.values and key in self.values:
+                raise wrong(key, "give either displacement or u1 and u2, not both")
+        return self
+
+
+class BodyForce(Table):
+    """A force on the body's volume."""
+
+    kind: Literal["body_force"]
+    value: Vector = Field(description="N/m³")
+    where: Condition | None = None
+
+
+class Couple(Table):
+    """A couple on the body's volume."""
+
+    kind: Literal["couple"]
+    value: Scalar = Field(description="N m/m³")
+    where: Condition | None = None
+
+
+class Source(Table):
+    """A source of heat or current."""
+
+    kind: Literal["source"]
+    value: Scalar = Field(description="W/m³")
+    where: Condition | None = None
+
+
+class Traction(Table):
+    """A traction on a straight part of the edge."""
+
+    kind: Literal["traction"]
+    value: Vector = Field(description="Pa")
+    start: Point = Field(description="m")
+    end: Point = Field(description="m")
+
+    @model_validator(mode="after")
+    def _length(self) -> Traction:
+        if self.start == self.end:
+            raise wrong("end", "the edge ends elsewhere than it starts")
+        return self
+
+
+class Stress(Table):
+    """The traction σ·n of a stress (σ11, σ22, σ12) on the body's edges."""
+
+    kind: Literal["stress"]
+    value: Triple = Field(description="Pa")
+    where: Condition | None = None
+
+
+class Flux(Table):
+    """What a flux carries into the body through its edges."""
+
+    kind: Literal["flux"]
+    value: Vector = Field(description="W/m²")
+    where: Condition | None = None
+
+
+Load = Annotated[
+    BodyForce | Couple | Source | Traction | Stress | Flux, Field(discriminator="kind")
+]
+
+
+class Crack(Table):
+    """A straight crack."""
+
+    start: Point = Field(description="m")
+    end: Point = Field(description="m")
+
+    @model_validator(mode="after")
+    def _length(self) -> Crack:
+        if self.start == self.end:
+            raise wrong("end", "a crack ends elsewhere than it starts")
+        return self
+
+
+# ---- what is asked ----------------------------------------------------------------------
+
+
+class Solve(Table):
+    """How well the equations are solved."""
+
+    tolerance: Positive = Field(default=1e-10, description="Relative residual, below 1")
+
+    @model_validator(mode="after")
+    def _small(self) -> Solve:
+        if not self.tolerance < 1:
+            raise wrong("tolerance", f"must lie between 0 and 1, not {self.tolerance:g}")
+        return self
+
+
+class Fracture(Table):
+    """Fracture energies, load programme and options of a run in which cracks grow."""
+
+    G1: Positive = Field(description="Fracture energy of a cut across the axis, J/m²")
+    G2: Positive | None = Field(default=None, description="Of a cut along the axis, J/m²")
+    n: Count = Field(default=2, description="Even exponent of the toughness law")
+    frequency: Count = Field(default=1, description="Lobes of the toughness law over a half turn")
+    axis_degrees: Number = Field(default=0.0, description="Axis of the toughness law")
+    toughness_calibration: Literal["lattice", "continuum", "even"] = "lattice"
+    start: NotNegative = Field(default=0.0, description="First load factor")
+    stop: NotNegative | None = Field(default=None, description="Last load factor")
+    increment: Positive | None = Field(default=None, description="Of the load factor")
+    overload: Positive | None = Field(default=None, description="Admissible share above w_c")
+    levels: Levels | None = Field(default=None, description="Load factors one after the other")
+    control: Literal["fixed", "following"] = "fixed"
+    batch: Count | None = Field(default=None, description="Bonds broken between two equilibria")
+    criterion: Literal["total", "axial"] = "total"
+    tension_only: StrictBool = True
+    max_solves: Count | None = Field(default=None, description="The run ends there")
+    tolerance: Positive = Field(default=1e-8, description="Relative residual, below 1")
+    no_fail: Condition | None = Field(default=None, description="Where bonds never break")
+    advance: Positive | None = Field(default=None, description="The run ends there, m")
+    checkpoint: FileName | None = Field(default=None, description="File to save to and go on from")
+
+    @model_validator(mode="after")
+    def _ends(self) -> Fracture:
+        ends = (self.stop, self.levels, self.advance, self.max_solves)
+        if all(end is None for end in ends):
+            raise wrong("", "has no end: give stop, levels, advance or max_solves")
+        if not self.tolerance < 1:
+            raise wrong("tolerance", f"must lie between 0 and 1, not {self.tolerance:g}")
+        if self.stop is not None and self.stop < self.start:
+            raise wrong("stop", f"the programme stops at {self.stop:g}, before it starts")
+        return self
+
+
+class SceneFile(Table):
+    """A scene file."""
+
+    title: str = ""
+    discretisation: Discretisation
+    region: Region
+    material: Material
+    support: list[Support] = []
+    load: list[Load] = []
+    crack: list[Crack] = []
+    solve: Solve = Solve()
+    fracture: Fracture | None = None
