@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from time import perf_counter
 
 import numpy as np
@@ -11,7 +12,7 @@ from scipy.spatial import KDTree
 from ..arrays import Array, Mask
 from ..bonds import Bonds
 from ..errors import MechanismError, SceneError
-from ..geometry import Lattice, Outline, Quadrature
+from ..geometry import Lattice, Outline, Quadrature, volumes
 from ..material import Family, Moduli, Stability, calibrated, require_admissible
 from ..operators import BondOperator
 from . import mechanisms
@@ -32,7 +33,8 @@ class Discretisation:
     values : ndarray, shape (components, N)
         Prescribed values (rotations times the spacing), zero where free, NaN where set aside.
     load : ndarray, shape (components, N)
-        Densities of force, couple over spacing, or source.
+        Densities of force, couple over spacing, or source, of a whole cell: what acts on the area
+        that a particle stands for, over Δx².
     nodal_load : ndarray, shape (components, nodes of the outline), optional
         Loads of the surface's nodes, per volume of a particle.
     seconds : float
@@ -65,7 +67,9 @@ class Discretisation:
         sharp_tips = sharp_tips and scene.broken is None
         edge_loads = _edge_loads(scene, lattice, sharp_tips)
         broken = scene.broken(lattice, family) if scene.broken else None
-        held = np.logical_and.reduce(prescribed, axis=0)
+        # Who is held is a matter of displacement (or temperature) alone: whether its particles may
+        # turn or not, a clamp is no free surface.
+        held = np.logical_and.reduce(prescribed[:2], axis=0)
         aside = np.zeros(lattice.count, dtype=bool)
         while True:
             bonds = Bonds(lattice, family, scene.cracks, scene.surface, held, broken, sharp_tips)
@@ -79,7 +83,10 @@ class Discretisation:
             )
             if not len(loose):
                 break
-            if scene.loose == "refuse" or aside.sum() + len(loose) == (~held).sum():
+            if (
+                scene.loose == "refuse"
+                or prescribed.all(axis=0).sum() + len(loose) == lattice.count
+            ):
                 raise mechanisms.refuse(why)
             if load[:, loose].any():
                 raise MechanismError(
@@ -111,6 +118,18 @@ class Discretisation:
             nodal_load,
             seconds,
         )
+
+    @cached_property
+    def volumes(self) -> Array:
+        """Area of the body that each particle stands for, shape (N,), cells (Δx²).
+
+        Loads in the body, and its mass, act on it. With ``extrapolated`` surfaces the sum is the
+        area of the body (`solver.geometry.strips`); the other treatments let the body end at its
+        outermost cells, and every particle is a whole one.
+        """
+        if self.scene.surface == "extrapolated":
+            return volumes(self.lattice)
+        return np.ones(self.lattice.count)
 
     @property
     def damaged(self) -> bool:
@@ -172,7 +191,7 @@ def _loads(scene: Description, lattice: Lattice, moduli: Moduli) -> Array:
     for item in scene.loads:
         if item.density is None:
             continue
-        mask, density = item.density(lattice)
+        mask, density = item.density(lattice, scene.surface == "extrapolated")
         for column, unknown in enumerate(physics.loads[item.kind]):
             if unknown >= moduli.components:
                 raise SceneError(f"a body {item.kind} {physics.missing[unknown]}")
