@@ -46,6 +46,10 @@ def volumes(lattice: Lattice, within: Region | None = None) -> Array:
         They add up to the area of the body (or of its part in the region) over Δx². One for every
         particle of a region that has no outline.
     """
+    if within is not None and any(lattice.centred.shift):
+        x, y = lattice.centred.shift
+        within = within.moved((-x, -y), lattice.grid)
+    lattice = lattice.centred
     spacing = lattice.spacing
     try:
         body = lattice.region.outline(_CHORD * spacing)

@@ -116,7 +116,7 @@ def find(
             sentence for _, sentence in loose[:3]
         )
     none = np.zeros(0, dtype=np.int64)
-    points = bonds.lattice.points
+    points = bonds.lattice.places
     cut = len(bonds.special) and ((bonds.strengths == 0) & bonds.exist(bonds.special)).any()
     slack = slack_particles(operator) if damaged or cut else none
     if len(slack):

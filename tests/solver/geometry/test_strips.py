@@ -30,10 +30,14 @@ def test_whole_cells_are_whole(mask):
 
 
 def test_a_strip_goes_to_the_row_beside_it():
-    # 0.3 cells beyond the last row at either end.
-    lattice = Lattice(rectangle(10.6, 4.0), 1.0, 2)
-    x = lattice.points[:, 0]
-    np.testing.assert_allclose(volumes(lattice), np.where(np.abs(x) > 4, 1.3, 1.0), rtol=1e-12)
+    # 0.2 cells beyond the last row at either end; 0.3 of the last rows missing.
+    for length, count, last in ((10.4, 10, 1.2), (10.6, 11, 0.8)):
+        lattice = Lattice(rectangle(length, 4.0), 1.0, 2)
+        assert lattice.count == 4 * count
+        x = np.abs(lattice.points[:, 0])
+        np.testing.assert_allclose(
+            volumes(lattice), np.where(x > x.max() - 0.5, last, 1.0), rtol=1e-12
+        )
 
 
 def test_a_disc_and_what_a_hole_leaves():
