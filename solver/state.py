@@ -101,7 +101,8 @@ class State:
         surface = self.discretisation.operator.ended_stiffness
         if surface is None:
             return np.zeros((0, 2))
-        return surface.ended.outline.nodes[surface.nodes]
+        shift = self.discretisation.bonds.lattice.shift
+        return surface.ended.outline.nodes[surface.nodes] + shift
 
     def _at_surface(self, name: str) -> Array:
         nodal = self.discretisation.surface_values(self.unknowns)

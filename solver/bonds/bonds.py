@@ -280,7 +280,7 @@ class Bonds:
                     touched[p] = touched[p] | mine if p in touched else mine
             if not found:
                 raise SceneError(
-                    f"the crack through {crack.points} cuts no bond: it lies outside the body"
+                    f"the crack through {crack.drawn} cuts no bond: it lies outside the body"
                 )
         particles = np.array(sorted(touched), dtype=np.int64)
         if not len(particles):

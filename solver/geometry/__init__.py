@@ -4,6 +4,7 @@ from .edge_quadrature import Quadrature
 from .lattice import Lattice, select
 from .outline import Outline
 from .regions import Crack, Point, Region, Where, disc, polygon, rectangle
+from .strips import volumes
 
 __all__ = [
     "Crack",
@@ -17,4 +18,5 @@ __all__ = [
     "polygon",
     "rectangle",
     "select",
+    "volumes",
 ]

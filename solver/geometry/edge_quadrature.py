@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from ..arrays import Array, Mask
 from ..errors import SceneError
 from .outline import Outline
-from .regions import Region, Where
+from .regions import Point, Region, Where
 
 # Quadrature points on an edge of the outline: closer than the particles, which may have to carry
 # each its own share.
@@ -19,6 +20,8 @@ _POINTS = 24
 _ALONG = 0.02
 # Smaller shares of an edge are rounding of where a load begins.
 _SLIVER = 1e-9
+# Halvings that find where a load begins within a part of an edge.
+_HALVINGS = 44
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +37,8 @@ class Quadrature:
     weight : ndarray, shape (k,), m
     density : ndarray, shape (k, components)
         Per length (and unit thickness).
+    shift : pair of float
+        What to add to the outline's coordinates for the user's, m.
     """
 
     outline: Outline
@@ -41,10 +46,15 @@ class Quadrature:
     position: Array
     weight: Array
     density: Array
+    shift: Point = (0.0, 0.0)
 
     @classmethod
-    def over(cls, outline: Outline, where: Where | None = None) -> Quadrature:
-        """The region's edges, or the part that `where` selects.
+    def over(
+        cls, outline: Outline, where: Where | None = None, shift: Point = (0.0, 0.0)
+    ) -> Quadrature:
+        """The region's edges, or the part that `where` selects, cut off where it ends.
+
+        Parts shorter than a point's share of an edge may be overlooked.
 
         Raises
         ------
@@ -52,20 +62,37 @@ class Quadrature:
             If nothing is selected.
         """
         edge = np.nonzero(outline.face == 0)[0]
-        rule = cls._rule(outline, edge, np.zeros(len(edge)), np.ones(len(edge)))
         if where is None:
-            return rule
-        x, y = rule.points.T
-        inside = where.contains(x, y) if isinstance(where, Region) else np.asarray(where(x, y))
-        if inside.dtype != bool or inside.shape != x.shape:
-            raise SceneError("a selection must return one boolean a point")
-        if not inside.any():
+            whole = cls._rule(outline, edge, np.zeros(len(edge)), np.ones(len(edge)))
+            return replace(whole, shift=shift)
+        edge = np.repeat(edge, _POINTS)
+        low = np.tile(np.arange(_POINTS) / _POINTS, len(edge) // _POINTS)
+        high = low + 1.0 / _POINTS
+        if isinstance(where, Region):
+            x, y = shift
+            where = where.moved((-x, -y))
+            # Within rounding points on the rim are selected: twice the rounding tells how much
+            # that adds.
+            once, twice = (
+                _clip(_selector(outline, w), edge, low, high) for w in (where, where.loosened())
+            )
+            low, high = (2 * a - b for a, b in zip(once, twice, strict=True))
+        else:
+            low, high = _clip(_selector(outline, where, shift), edge, low, high)
+        kept = high - low > _SLIVER
+        if not kept.any():
             raise SceneError("a load on the edge acts nowhere: no point of the edge is selected")
-        return rule._pick(inside)
+        edge, low, high = edge[kept], low[kept], high[kept]
+        weight = (high - low) * outline.length[edge]
+        nothing = np.zeros((len(edge), 0))
+        return cls(outline, edge, 0.5 * (low + high), weight, nothing, shift)
 
     @classmethod
-    def between(cls, outline: Outline, start: Array, end: Array) -> Quadrature:
-        """The edges, or parts of them, along a straight line."""
+    def between(
+        cls, outline: Outline, start: Array, end: Array, shift: Point = (0.0, 0.0)
+    ) -> Quadrature:
+        """The edges, or parts of them, along a straight line (in the user's coordinates)."""
+        start, end = start - shift, end - shift
         first, last = (outline.nodes[outline.edges[:, k]] for k in (0, 1))
         length = float(np.hypot(*(end - start)))
         along = (end - start) / length
@@ -79,7 +106,7 @@ class Quadrature:
         ends = [np.clip((x - a) / (b - a), 0.0, 1.0) for x in (0.0, length)]
         low, high = np.minimum(*ends), np.maximum(*ends)
         kept = high > low + _SLIVER
-        return cls._rule(outline, edge[kept], low[kept], high[kept])
+        return replace(cls._rule(outline, edge[kept], low[kept], high[kept]), shift=shift)
 
     @classmethod
     def _rule(
@@ -91,10 +118,6 @@ class Quadrature:
         weight = np.repeat((high - low) * outline.length[edge] / _POINTS, _POINTS)
         return cls(outline, np.repeat(edge, _POINTS), position, weight, np.zeros((len(weight), 0)))
 
-    def _pick(self, chosen: Mask) -> Quadrature:
-        parts = (self.position, self.weight, self.density)
-        return Quadrature(self.outline, self.edge[chosen], *(part[chosen] for part in parts))
-
     def __len__(self) -> int:
         return len(self.edge)
 
@@ -103,6 +126,11 @@ class Quadrature:
         """Shape (k, 2), m."""
         first, last = (self.outline.nodes[self.outline.edges[self.edge, k]] for k in (0, 1))
         return first + self.position[:, None] * (last - first)
+
+    @property
+    def places(self) -> Array:
+        """The same in the user's coordinates."""
+        return self.points + self.shift
 
     @property
     def normals(self) -> Array:
@@ -117,3 +145,46 @@ class Quadrature:
     def force(self) -> Array:
         """What acts at each point, shape (k, components)."""
         return self.weight[:, None] * self.density
+
+
+def _selector(
+    outline: Outline, where: Where, shift: Point = (0.0, 0.0)
+) -> Callable[[NDArray[np.int64], Array], Mask]:
+    """Whether points at positions along edges are selected."""
+    first = outline.nodes[outline.edges[:, 0]]
+    along = outline.nodes[outline.edges[:, 1]] - first
+
+    def inside(edge: NDArray[np.int64], position: Array) -> Mask:
+        points = first[edge] + position[:, None] * along[edge] + shift
+        if isinstance(where, Region):
+            return where.contains(*points.T)
+        found = np.asarray(where(*points.T))
+        if found.dtype != bool or found.shape != position.shape:
+            raise SceneError("a selection must return one boolean a point")
+        return found
+
+    return inside
+
+
+def _clip(
+    inside: Callable[[NDArray[np.int64], Array], Mask],
+    edge: NDArray[np.int64],
+    low: Array,
+    high: Array,
+) -> tuple[Array, Array]:
+    """Parts of edges cut off where the selection ends; empty ones where it has no end of them."""
+    ends = inside(edge, low), inside(edge, high)
+    cut = np.nonzero(ends[0] != ends[1])[0]
+    within, beyond = (np.where(ends[0] == first, low, high)[cut] for first in (True, False))
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (within + beyond)
+        here = inside(edge[cut], middle)
+        within, beyond = np.where(here, middle, within), np.where(here, beyond, middle)
+    none = ~(ends[0] | ends[1])
+    low, high = low.copy(), high.copy()
+    low[cut] = np.where(ends[0][cut], low[cut], within)
+    high[cut] = np.where(ends[1][cut], high[cut], within)
+    # Where only the ends lie on the rim, nothing between them is selected.
+    none[~none] = ~inside(edge[~none], 0.5 * (low + high)[~none])
+    high[none] = low[none]
+    return low, high

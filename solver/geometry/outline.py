@@ -33,6 +33,8 @@ _EDGE_STEP, _LEVEL_STEP, _FACE_STEP = 2.5, 1.0, 1.0
 _SHARP = 0.6
 # Share of the step within which a line counts as touching.
 _TIE = 1e-9
+# Shares of a bond that are the same.
+_SAME = 1e-7
 # Bonds whose candidates are compared at once.
 _CHUNK = 100_000
 
@@ -181,7 +183,8 @@ class Outline:
             path, met, where, depth = path[valid], met[valid], where[valid], depth[valid]
             # Nearest to the bond itself, then to its start.
             beyond = np.abs(depth - np.clip(depth, 0.0, 1.0))
-            order = np.lexsort((met, depth, beyond, path))
+            # Where several are met at once, which one counts must not depend on rounding.
+            order = np.lexsort((met, np.rint(depth / _SAME), np.rint(beyond / _SAME), path))
             path, nearest = np.unique(path[order], return_index=True)
             chosen = order[nearest]
             edge[path], position[path], share[path] = met[chosen], where[chosen], depth[chosen]
@@ -274,11 +277,11 @@ def apart(cracks: Sequence[Crack]) -> None:
     lines = [shapely.LineString(crack.points) for crack in cracks]
     for line, crack in zip(lines, cracks, strict=True):
         if not line.is_simple:
-            raise SceneError(f"the crack through {crack.points} crosses itself")
+            raise SceneError(f"the crack through {crack.drawn} crosses itself")
     for one, other in combinations(range(len(lines)), 2):
         if lines[one].intersects(lines[other]):
             raise SceneError(
-                f"the cracks through {cracks[one].points} and {cracks[other].points} meet: "
+                f"the cracks through {cracks[one].drawn} and {cracks[other].drawn} meet: "
                 f"surface='extrapolated' knows no branching faces, use surface='volume'"
             )
 
@@ -291,7 +294,12 @@ def _rings(region: Region, step: float) -> list[Array]:
     for polygon in polygons:
         turned = shapely.geometry.polygon.orient(polygon, 1.0)
         rings += [turned.exterior, *turned.interiors]
-    return [shapely.get_coordinates(ring)[:-1] for ring in rings]
+    found = [shapely.get_coordinates(ring)[:-1] for ring in rings]
+    # Where a ring begins, and which is first, must not depend on rounding.
+    keys = [np.rint(ring / step * 1e5) for ring in found]
+    starts = [np.lexsort(key.T)[0] for key in keys]
+    order = sorted(range(len(found)), key=lambda k: tuple(keys[k][starts[k]][::-1]))
+    return [np.roll(found[k], -starts[k], axis=0) for k in order]
 
 
 def _walk(points: Array, step: float, closed: bool, level: float | None = None) -> Array:

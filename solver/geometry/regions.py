@@ -2,13 +2,19 @@
 
 Membership and distance of discs are exact (a polygon would miscount particles); polygons go
 through shapely. Shapes combine by subtraction, which is what holes and notches are.
+
+Who owns the edge: **a point on the edge of a shape belongs to the shape that was drawn**, discs and
+polygons alike, within rounding. So a body has the particles on its outer edge; those on the rim of
+a hole or notch belong to the hole, and not to the body; a region that selects particles or edges
+takes those on its edge with it. The rule knows no left or right: mirror images have mirrored
+particles, and an oblique edge through particle centres stays straight.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
@@ -21,8 +27,10 @@ from ..errors import SceneError
 
 Point = tuple[float, float]
 
-# Points nearer to a polygon's edge than this share of its size lie on it.
+# Points nearer to an edge than this share of the shape's size lie on it,
 _EDGE = 1e-9
+# and those nearer than so many roundings of its coordinates.
+_ROUNDINGS = 4 * np.finfo(np.float64).eps
 
 
 class Region(ABC):
@@ -35,7 +43,7 @@ class Region(ABC):
 
     @abstractmethod
     def contains(self, x: Array, y: Array) -> NDArray[np.bool_]:
-        """Whether each point is inside."""
+        """Whether each point is inside or on the edge."""
 
     @abstractmethod
     def edge_distance(self, x: Array, y: Array) -> Array:
@@ -55,17 +63,67 @@ class Region(ABC):
             f"need one"
         )
 
+    def moved(self, by: Point, grid: float = 0.0) -> Region:
+        """The same shape `by` (m) further.
+
+        Shapes of this module move their own coordinates, so that nothing is lost to rounding far
+        from the origin. What had been lost there is restored where the coordinates then are
+        multiples of `grid` (m) within that rounding: they become so exactly.
+        """
+        return Moved(self, by)
+
+    def loosened(self) -> Region:
+        """The same shape with twice the rounding within which a point lies on its edge.
+
+        Where an edge really is, follows from the two.
+        """
+        return self
+
     def __sub__(self, hole: Region) -> Region:
         """This region without `hole`."""
         return Difference(self, hole)
 
 
+def _moved(points: Sequence[Point], by: Point, grid: float) -> tuple[Point, ...]:
+    """Points `by` further, exactly on multiples of `grid` that they meet within rounding."""
+    given = np.array(points, dtype=np.float64)
+    there = given + by
+    if grid > 0:
+        rounding = _ROUNDINGS * np.maximum(np.abs(given), np.abs(by))
+        near = np.rint(there / grid) * grid
+        there = np.where(np.abs(near - there) <= rounding, near, there)
+    return tuple((float(x), float(y)) for x, y in there)
+
+
+@dataclass(frozen=True)
+class Moved(Region):
+    """Any `shape`, moved `by` so much (m)."""
+
+    shape: Region
+    by: Point
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        (x0, y0, x1, y1), (dx, dy) = self.shape.bounds, self.by
+        return x0 + dx, y0 + dy, x1 + dx, y1 + dy
+
+    def contains(self, x: Array, y: Array) -> NDArray[np.bool_]:
+        return self.shape.contains(x - self.by[0], y - self.by[1])
+
+    def outline(self, step: float) -> shapely.Geometry:
+        return shapely.transform(self.shape.outline(step), lambda points: points + self.by)
+
+    def edge_distance(self, x: Array, y: Array) -> Array:
+        return self.shape.edge_distance(x - self.by[0], y - self.by[1])
+
+
 @dataclass(frozen=True)
 class Disc(Region):
-    """Disc of `radius` about `centre`, m."""
+    """Disc of `radius` about `centre`, m; `slack` (m) is the rounding of where it was drawn."""
 
     radius: float
     centre: Point = (0.0, 0.0)
+    slack: float = field(default=0.0, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.radius) and self.radius > 0):
@@ -77,7 +135,18 @@ class Disc(Region):
         return x - r, y - r, x + r, y + r
 
     def contains(self, x: Array, y: Array) -> NDArray[np.bool_]:
-        return (x - self.centre[0]) ** 2 + (y - self.centre[1]) ** 2 <= self.radius**2
+        tie = self._tie
+        return np.asarray(np.hypot(x - self.centre[0], y - self.centre[1]) <= self.radius + tie)
+
+    @property
+    def _tie(self) -> float:
+        return max(self.slack, _EDGE * self.radius, _ROUNDINGS * float(np.abs(self.centre).max()))
+
+    def moved(self, by: Point, grid: float = 0.0) -> Disc:
+        return Disc(self.radius, _moved((self.centre,), by, grid)[0], self._tie)
+
+    def loosened(self) -> Disc:
+        return Disc(self.radius, self.centre, 2 * self._tie)
 
     def outline(self, step: float) -> shapely.Geometry:
         # A multiple of four keeps the lattice's symmetry.
@@ -94,9 +163,13 @@ class Disc(Region):
 
 @dataclass(frozen=True)
 class Polygon(Region):
-    """Simple polygon through `vertices` (without holes; subtract those)."""
+    """Simple polygon through `vertices` (without holes; subtract those).
+
+    `slack` (m) is the rounding of where it was drawn.
+    """
 
     vertices: tuple[Point, ...]
+    slack: float = field(default=0.0, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         if not np.all(np.isfinite(np.asarray(self.vertices, dtype=np.float64))):
@@ -106,6 +179,8 @@ class Polygon(Region):
             raise ValueError(f"not a simple polygon with an area: {self.vertices}")
         shapely.prepare(shape)
         object.__setattr__(self, "_shape", shape)
+        object.__setattr__(self, "_edge", shape.exterior)
+        shapely.prepare(self._edge)  # type: ignore[attr-defined]
 
     @property
     def shape(self) -> shapely.Polygon:
@@ -118,12 +193,26 @@ class Polygon(Region):
         return float(x0), float(y0), float(x1), float(y1)
 
     def contains(self, x: Array, y: Array) -> NDArray[np.bool_]:
-        # Half open, as pixels are: a point exactly on an edge counts if the body lies to its
-        # right (or above it, on a level edge). A body of whole cells whose edges run through
-        # particle centres then has as many particles as cells, whatever the rounding.
+        x, y = np.broadcast_arrays(x, y)
         x0, y0, x1, y1 = self.bounds
-        nudge = _EDGE * max(x1 - x0, y1 - y0)
-        return shapely.contains_xy(self.shape, x + nudge, y + nudge)
+        tie = self._tie
+        inside = np.array(shapely.contains_xy(self.shape, x, y))
+        near = ~inside & (x >= x0 - tie) & (x <= x1 + tie) & (y >= y0 - tie) & (y <= y1 + tie)
+        edge = self._edge  # type: ignore[attr-defined]
+        inside[near] = shapely.dwithin(edge, shapely.points(x[near], y[near]), tie)
+        return inside
+
+    @property
+    def _tie(self) -> float:
+        x0, y0, x1, y1 = self.bounds
+        size = max(x1 - x0, y1 - y0)
+        return max(self.slack, _EDGE * size, _ROUNDINGS * float(np.abs(self.bounds).max()))
+
+    def moved(self, by: Point, grid: float = 0.0) -> Polygon:
+        return Polygon(_moved(self.vertices, by, grid), self._tie)
+
+    def loosened(self) -> Polygon:
+        return Polygon(self.vertices, 2 * self._tie)
 
     def outline(self, step: float) -> shapely.Geometry:
         return self.shape
@@ -152,6 +241,12 @@ class Difference(Region):
 
     def outline(self, step: float) -> shapely.Geometry:
         return shapely.difference(self.body.outline(step), self.hole.outline(step))
+
+    def moved(self, by: Point, grid: float = 0.0) -> Difference:
+        return Difference(self.body.moved(by, grid), self.hole.moved(by, grid))
+
+    def loosened(self) -> Difference:
+        return Difference(self.body.loosened(), self.hole.loosened())
 
     def edge_distance(self, x: Array, y: Array) -> Array:
         return np.minimum(self.body.edge_distance(x, y), self.hole.edge_distance(x, y))
@@ -214,6 +309,18 @@ class Crack:
         if np.any(np.linalg.norm(np.diff(array, axis=0), axis=1) == 0):
             raise ValueError(f"a crack with a piece of no length: {points}")
         object.__setattr__(self, "points", tuple((float(x), float(y)) for x, y in array))
+
+    def moved(self, by: Point, grid: float = 0.0) -> Crack:
+        """As `Region.moved`; the crack remembers as what it was drawn."""
+        result = Crack(*_moved(self.points, by, grid))
+        object.__setattr__(result, "_drawn", self.drawn)
+        return result
+
+    @property
+    def drawn(self) -> tuple[Point, ...]:
+        """The points that the user gave, m: what messages say."""
+        drawn: tuple[Point, ...] = getattr(self, "_drawn", self.points)
+        return drawn
 
     @property
     def closed(self) -> bool:

@@ -77,7 +77,7 @@ def _inverse(operator: BondOperator, blocks: Array, which: NDArray[np.int64] | N
     if not relative.min() > 1e-12:
         where = "a bulk particle"
         if which is not None:
-            x, y = operator.bonds.lattice.points[operator.active[which[np.argmin(relative)]]]
+            x, y = operator.bonds.lattice.places[operator.active[which[np.argmin(relative)]]]
             where = f"the particle at ({x:.4g}, {y:.4g})"
         raise NegativeCurvatureError(
             f"{where} is a mechanism: the stiffness of its own bonds is singular or negative "

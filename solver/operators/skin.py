@@ -48,6 +48,8 @@ _BEND = 1.2
 # Radius of curvature (cells) below which the bump would see round the curve: no membrane there,
 # the whole of it from twice that on.
 _TIGHT = 5.0
+# Distance (cells) within which a line of particles lies on the edge.
+_ON_EDGE = 1e-7
 # Thickness (cells) that is rounding, or the little by which a line on the very edge lies inside.
 _NONE = 1e-6
 
@@ -113,13 +115,14 @@ def thickness(outline: Outline, family: Family, moduli: Moduli, edges: Indices) 
         summed[:, direction] += share[:, place]
     round_enough = np.clip((_radius(outline, edges[own]) / h - _TIGHT) / _TIGHT, 0.0, 1.0)
     chains, length = _chains(outline, edges[own], _BUMP * _REACH * h)
+    # The edge belongs to the body: a line of particles on it lies a little inside.
+    outside = _ON_EDGE * outline.outward[edges[own]]
     lack = _lack(
-        0.5 * (first + last) / h,
-        chains / h,
+        0.5 * (first + last) / h + outside,
+        chains / h + outside[:, None],
         length,
         directions.step.astype(np.float64),
-        # Half open, as regions are: a line of particles on the very edge lies a little inside.
-        0.5 + 1e-7,
+        0.5,
         summed,
         _BUMP,
         _BUMP * _REACH,

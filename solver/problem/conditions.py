@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array, Mask
 from ..errors import SceneError
-from ..geometry import Lattice, Outline, Point, Quadrature, Where, select
+from ..geometry import Lattice, Outline, Point, Quadrature, Region, Where, select, volumes
 from ..material.physics import Physics
 
 Value = float | ArrayLike | Callable[[Array, Array], Any]
@@ -138,29 +138,46 @@ class Load:
         Body force (N/m³, two components), body couple (N m/m³), heat source (W/m³); on edges
         traction (Pa, two components) and inflow of heat (W/m²).
     density : callable, optional
-        Of a load in the body: lattice → (mask, densities of shape (selected, components)).
+        Of a load in the body: lattice, whether its edge is where it is drawn → (mask, what acts
+        on each particle over its cell, shape (selected, components)).
     edge : callable, optional
-        Of a load on edges: outline → quadrature.
+        Of a load on edges: outline, its shift from the user's coordinates → quadrature.
     """
 
     kind: str
-    density: Callable[[Lattice], tuple[Mask, Array]] | None = None
-    edge: Callable[[Outline], Quadrature] | None = None
+    density: Callable[[Lattice, bool], tuple[Mask, Array]] | None = None
+    edge: Callable[[Outline, Point], Quadrature] | None = None
 
     @classmethod
     def _body(cls, kind: str, value: Value, components: int, where: Where | None) -> Load:
-        def density(lattice: Lattice) -> tuple[Mask, Array]:
+        def density(lattice: Lattice, true_edges: bool) -> tuple[Mask, Array]:
             everywhere = np.ones(lattice.count, dtype=bool)
             mask = everywhere if where is None else select(lattice, where)
+            volume = np.ones(lattice.count)
+            if true_edges:
+                # One value a particle goes with the particles that the region holds.
+                listed = not callable(value) and np.ndim(value) >= min(components, 2)
+                if isinstance(where, Region) and not listed:
+                    volume = volumes(lattice, where)
+                    mask = volume > 0
+                else:
+                    volume = volumes(lattice)
             if not mask.any():
                 raise SceneError(f"a {kind} acts on no particle")
-            return mask, evaluate(value, lattice.points[mask], components, f"a body {kind}")
+            acting = evaluate(value, lattice.places[mask], components, f"a body {kind}")
+            return mask, acting * volume[mask, None]
 
         return cls(kind, density)
 
     @classmethod
     def body_force(cls, force: Value, where: Where | None = None) -> Load:
-        """Body force (b1, b2), N/m³, as a pair, an (n, 2) array or a function of (x, y)."""
+        """Body force (b1, b2), N/m³, as a pair, an (n, 2) array or a function of (x, y).
+
+        With ``extrapolated`` surfaces, where edges lie as drawn, all loads in the body act on its
+        area (`solver.geometry.strips`): a constant one adds up to density × area, whether or not
+        the body, or the region `where`, is a whole number of cells. Treatments that let the body
+        end at its outermost cells load whole cells.
+        """
         return cls._body("force", force, 2, where)
 
     @classmethod
@@ -177,11 +194,11 @@ class Load:
     def traction(cls, traction: Value, start: Point, end: Point) -> Load:
         """Traction (t1, t2), Pa, on the straight part of the body's edge from `start` to `end`."""
 
-        def edge(outline: Outline) -> Quadrature:
-            rule = Quadrature.between(outline, np.array(start), np.array(end))
+        def edge(outline: Outline, shift: Point) -> Quadrature:
+            rule = Quadrature.between(outline, np.array(start), np.array(end), shift)
             if not len(rule):
                 raise SceneError(f"no edge of the body runs along {start}–{end}")
-            return rule.carrying(evaluate(traction, rule.points, 2, "a traction"))
+            return rule.carrying(evaluate(traction, rule.places, 2, "a traction"))
 
         return cls("traction", edge=edge)
 
@@ -196,9 +213,9 @@ class Load:
             The part of the edge that carries it; all of it by default. Faces of cracks never do.
         """
 
-        def edge(outline: Outline) -> Quadrature:
-            rule = Quadrature.over(outline, where)
-            s11, s22, s12 = evaluate(stress, rule.points, 3, "a stress at the edge").T
+        def edge(outline: Outline, shift: Point) -> Quadrature:
+            rule = Quadrature.over(outline, where, shift)
+            s11, s22, s12 = evaluate(stress, rule.places, 3, "a stress at the edge").T
             n1, n2 = rule.normals.T
             return rule.carrying(np.column_stack([s11 * n1 + s12 * n2, s12 * n1 + s22 * n2]))
 
@@ -208,9 +225,9 @@ class Load:
     def flux(cls, flux: Value, where: Where | None = None) -> Load:
         """What a flux (q1, q2), W/m², carries into the body through its edges: −q·n."""
 
-        def edge(outline: Outline) -> Quadrature:
-            rule = Quadrature.over(outline, where)
-            q = evaluate(flux, rule.points, 2, "a flux at the edge")
+        def edge(outline: Outline, shift: Point) -> Quadrature:
+            rule = Quadrature.over(outline, where, shift)
+            q = evaluate(flux, rule.places, 2, "a flux at the edge")
             return rule.carrying(-np.einsum("ki,ki->k", q, rule.normals)[:, None])
 
         return cls("inflow", edge=edge)

@@ -57,6 +57,9 @@ class Description:
     broken : callable, optional
         ``broken(lattice, family)`` → booleans of shape (family size / 2, N): bonds, by half
         offset and particle of origin, that carry nothing (damage).
+    phase : pair of float, optional
+        Where the cells of the lattice begin, at (k + phase) Δx; chosen from the body by default,
+        see `solver.geometry.lattice`.
     loose : {"refuse", "drop"}
         What to do with parts and particles that nothing holds: refuse the scene, or set them
         aside (their fields are NaN, the rest is solved). A load on such a part is refused.
@@ -81,6 +84,7 @@ class Description:
     cracks: Sequence[Crack] = ()
     broken: Callable[[Lattice, Family], Mask] | None = None
     loose: Literal["refuse", "drop"] = "refuse"
+    phase: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         check_surface(self.surface)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from time import perf_counter
 
 import numpy as np
@@ -11,7 +13,7 @@ from scipy.spatial import KDTree
 from ..arrays import Array, Mask
 from ..bonds import Bonds
 from ..errors import MechanismError, SceneError
-from ..geometry import Lattice, Outline, Quadrature
+from ..geometry import Crack, Lattice, Outline, Quadrature, volumes
 from ..material import Family, Moduli, Stability, calibrated, require_admissible
 from ..operators import BondOperator
 from . import mechanisms
@@ -26,13 +28,14 @@ class Discretisation:
     Attributes
     ----------
     lattice, family, moduli, stability, bonds, operator
-        The parts, see their modules.
+        The parts, see their modules. The bonds' lattice is `lattice.centred`.
     prescribed : ndarray of bool, shape (components, N)
         True for parts set aside too.
     values : ndarray, shape (components, N)
         Prescribed values (rotations times the spacing), zero where free, NaN where set aside.
     load : ndarray, shape (components, N)
-        Densities of force, couple over spacing, or source.
+        Densities of force, couple over spacing, or source, of a whole cell: what acts on the area
+        that a particle stands for, over Δx².
     nodal_load : ndarray, shape (components, nodes of the outline), optional
         Loads of the surface's nodes, per volume of a particle.
     seconds : float
@@ -59,16 +62,19 @@ class Discretisation:
         family = scene.family()
         moduli = calibrated(family, scene.material, scene.calibration, scene.law)
         stability = require_admissible(family, moduli)
-        lattice = Lattice(scene.region, scene.spacing, family.reach)
+        lattice = Lattice(scene.region, scene.spacing, family.reach, scene.phase)
+        cracks = _moved(scene.cracks, lattice)
         prescribed, values = _supports(scene, lattice, moduli)
         load = _loads(scene, lattice, moduli)
         sharp_tips = sharp_tips and scene.broken is None
-        edge_loads = _edge_loads(scene, lattice, sharp_tips)
+        edge_loads = _edge_loads(scene, lattice, cracks, sharp_tips)
         broken = scene.broken(lattice, family) if scene.broken else None
-        held = np.logical_and.reduce(prescribed, axis=0)
+        # Who is held is a matter of displacement (or temperature) alone: whether its particles may
+        # turn or not, a clamp is no free surface.
+        held = np.logical_and.reduce(prescribed[:2], axis=0)
         aside = np.zeros(lattice.count, dtype=bool)
         while True:
-            bonds = Bonds(lattice, family, scene.cracks, scene.surface, held, broken, sharp_tips)
+            bonds = Bonds(lattice.centred, family, cracks, scene.surface, held, broken, sharp_tips)
             operator = BondOperator(bonds, moduli, prescribed)
             loose, why = mechanisms.find(
                 bonds,
@@ -79,7 +85,10 @@ class Discretisation:
             )
             if not len(loose):
                 break
-            if scene.loose == "refuse" or aside.sum() + len(loose) == (~held).sum():
+            if (
+                scene.loose == "refuse"
+                or prescribed.all(axis=0).sum() + len(loose) == lattice.count
+            ):
                 raise mechanisms.refuse(why)
             if load[:, loose].any():
                 raise MechanismError(
@@ -111,6 +120,18 @@ class Discretisation:
             nodal_load,
             seconds,
         )
+
+    @cached_property
+    def volumes(self) -> Array:
+        """Area of the body that each particle stands for, shape (N,), cells (Δx²).
+
+        Loads in the body, and its mass, act on it. With ``extrapolated`` surfaces the sum is the
+        area of the body (`solver.geometry.strips`); the other treatments let the body end at its
+        outermost cells, and every particle is a whole one.
+        """
+        if self.scene.surface == "extrapolated":
+            return volumes(self.lattice)
+        return np.ones(self.lattice.count)
 
     @property
     def damaged(self) -> bool:
@@ -160,7 +181,7 @@ def _supports(scene: Description, lattice: Lattice, moduli: Moduli) -> tuple[Mas
             key = id(value), width
             if key not in evaluated:
                 what = "a prescribed value"
-                evaluated[key] = evaluate(value, lattice.points[selected], width, what)
+                evaluated[key] = evaluate(value, lattice.places[selected], width, what)
             prescribed[unknown, selected] = True
             values[unknown, selected] = scales[unknown] * evaluated[key][:, component]
     return prescribed, values
@@ -172,7 +193,7 @@ def _loads(scene: Description, lattice: Lattice, moduli: Moduli) -> Array:
     for item in scene.loads:
         if item.density is None:
             continue
-        mask, density = item.density(lattice)
+        mask, density = item.density(lattice, scene.surface == "extrapolated")
         for column, unknown in enumerate(physics.loads[item.kind]):
             if unknown >= moduli.components:
                 raise SceneError(f"a body {item.kind} {physics.missing[unknown]}")
@@ -180,13 +201,24 @@ def _loads(scene: Description, lattice: Lattice, moduli: Moduli) -> Array:
     return load
 
 
-def _edge_loads(scene: Description, lattice: Lattice, sharp_tips: bool) -> list[Quadrature]:
+def _moved(cracks: Sequence[Crack], lattice: Lattice) -> list[Crack]:
+    """Cracks in the coordinates of the centred lattice."""
+    x, y = lattice.centred.shift
+    return [
+        crack if (x, y) == (0.0, 0.0) else crack.moved((-x, -y), lattice.grid) for crack in cracks
+    ]
+
+
+def _edge_loads(
+    scene: Description, lattice: Lattice, cracks: list[Crack], sharp_tips: bool
+) -> list[Quadrature]:
     """Loads on the body's edges, evaluated."""
     edges = [item.edge for item in scene.loads if item.edge is not None]
     if not edges:
         return []
-    outline = Outline.of(lattice.region, scene.cracks, lattice.spacing, sharp_tips)
-    return [edge(outline) for edge in edges]
+    near = lattice.centred
+    outline = Outline.of(near.region, cracks, near.spacing, sharp_tips)
+    return [edge(outline, near.shift) for edge in edges]
 
 
 def _share_out(
@@ -213,7 +245,7 @@ def _share_out(
                 for component, values in enumerate(force):
                     np.add.at(nodal[component], node[felt], (part * values)[felt])
         # Edges without nodes: no treatment that has any, or held particles behind them.
-        _, nearest = KDTree(lattice.points).query(rule.points[~felt])
+        _, nearest = KDTree(lattice.centred.points).query(rule.points[~felt])
         for component, values in enumerate(force):
             np.add.at(load[component], nearest, values[~felt])
     return nodal

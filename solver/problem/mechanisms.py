@@ -37,14 +37,17 @@ _ZERO_ENERGY = 1e-10
 def slack_particles(operator: BondOperator) -> NDArray[np.int64]:
     """Numbers of active particles whose own bonds leave them a motion without stiffness.
 
-    The sign is not judged: negative rotation stiffness is no slackness.
+    The sign is not judged: negative rotation stiffness is no slackness. Each unknown is measured
+    by what the bulk has for it: a solid whose bonds hardly resist shear (ν near 1/3) hardly
+    resists rotations anywhere, and no particle of it is slack for that.
     """
     blocks = operator.own_blocks
     if not len(blocks):
         return np.zeros(0, dtype=np.int64)
-    sizes = np.abs(np.linalg.eigvalsh(blocks))
-    scale = max(float(sizes.max()), float(np.abs(operator.bulk_block).max()))
-    slack = sizes.min(axis=1) <= _SINGULAR * scale
+    bulk = np.abs(np.diagonal(operator.bulk_block))
+    unit = np.sqrt(np.maximum(bulk, np.finfo(np.float64).tiny))
+    sizes = np.abs(np.linalg.eigvalsh(blocks / np.outer(unit, unit)))
+    slack = sizes.min(axis=1) <= _SINGULAR * max(float(sizes.max()), 1.0)
     return operator.active[operator.own[slack]]
 
 
@@ -113,7 +116,7 @@ def find(
             sentence for _, sentence in loose[:3]
         )
     none = np.zeros(0, dtype=np.int64)
-    points = bonds.lattice.points
+    points = bonds.lattice.places
     cut = len(bonds.special) and ((bonds.strengths == 0) & bonds.exist(bonds.special)).any()
     slack = slack_particles(operator) if damaged or cut else none
     if len(slack):

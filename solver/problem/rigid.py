@@ -78,7 +78,8 @@ def unheld(bonds: Bonds, prescribed: Mask, physics: Physics) -> list[tuple[Mask,
     for part in np.unique(labels[active]):
         members = labels == part
         where = points[members].mean(axis=0)
-        place = "the body" if count == 1 else f"the part about ({where[0]:.4g}, {where[1]:.4g})"
+        x, y = where + bonds.lattice.shift
+        place = "the body" if count == 1 else f"the part about ({x:.4g}, {y:.4g})"
         motions = free_motions(points[members] - where, prescribed[:, members], physics)
         if motions:
             size = f"{place} ({int(members.sum())} particles)"

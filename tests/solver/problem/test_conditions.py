@@ -321,3 +321,63 @@ def test_loads_that_do_not_fit():
         plate(HELD, loads=[Load.traction((1.0, 0.0, 0.0), (0.5, -0.5), (0.5, 0.5))])
     with pytest.raises(SceneError, match="a body force is not finite"):
         plate(HELD, loads=[Load.body_force((np.nan, 0.0))])
+
+
+@pytest.mark.parametrize("spacing", [0.05, 0.037])
+def test_body_loads_act_on_the_area_where_edges_are_as_drawn(spacing):
+    part = rectangle(0.3, 0.41, (0.1, 0.05))
+    loads = [Load.body_force((2.0, 0.0)), Load.body_force((0.0, 1.0), where=part)]
+    body = rectangle(1.0245, 0.77)
+    parts = Scene(body, spacing, SOLID, [HELD], loads, m=2, surface="extrapolated").discretise()
+    assert resultant(parts, 0) == pytest.approx(2.0 * 1.0245 * 0.77, rel=1e-12)
+    assert resultant(parts, 1) == pytest.approx(0.3 * 0.41, rel=1e-12)
+    assert parts.volumes.sum() * spacing**2 == pytest.approx(1.0245 * 0.77, rel=1e-12)
+    # The other treatments' bodies are whole cells.
+    parts = Scene(body, spacing, SOLID, [HELD], loads, m=2).discretise()
+    np.testing.assert_array_equal(parts.volumes, 1.0)
+    np.testing.assert_array_equal(parts.load[0], 2.0)
+
+
+def test_a_bar_with_a_source_feels_all_of_it():
+    # Insulated but at the left, T'' = −1: 2.4 % of the width lies beyond whole cells.
+    width = 1.0245
+
+    def exact_field(x, y):
+        return (x + width / 2) * (1.5 * width - x) / 2
+
+    errors = []
+    for cells in (20, 80):
+        held = Support.where(
+            lambda x, y, c=cells: x < -width / 2 + 5.01 / c, temperature=exact_field
+        )
+        scene = Scene(
+            rectangle(width, 0.4),
+            1 / cells,
+            CONDUCTOR,
+            [held],
+            [Load.source(1.0)],
+            surface="extrapolated",
+        )
+        solution = scene.solve()
+        true = exact_field(*solution.points.T)
+        errors.append(np.linalg.norm(solution.temperature - true) / np.linalg.norm(true))
+    assert errors[0] < 3e-4
+    assert errors[1] < 5e-5
+
+
+@pytest.mark.parametrize("surface", ["none", "volume", "extrapolated"])
+def test_who_is_held_is_decided_by_displacement_alone(surface):
+    # ν = 1/3 has no rotations, ν just below has them free in the clamp.
+    tips = []
+    for nu in (1 / 3, 0.33333333):
+        scene = Scene(
+            rectangle(30, 10),
+            1.0,
+            ElasticTensor.isotropic(1.0, nu),
+            [Support.where(lambda x, y: x < -10, displacement=0.0)],
+            [Load.body_force((0.0, 1e-3), where=lambda x, y: x > 14)],
+            m=3,
+            surface=surface,
+        )
+        tips.append(scene.solve().displacement[:, 1].max())
+    assert tips[1] == pytest.approx(tips[0], rel=1e-7)

@@ -178,3 +178,17 @@ def test_one_function_for_two_values_is_not_confused() -> None:
     support = Support.layer(cells=3.5, displacement=pair, rotation=pair)
     with pytest.raises(SceneError, match="one value a particle"):
         _scene(supports=[support]).discretise()
+
+
+@pytest.mark.parametrize("apart", [1e-10, 1e-12, -1e-10])
+def test_a_solid_that_hardly_resists_shear_is_no_mechanism(apart: float) -> None:
+    tips = []
+    for nu in (1 / 3, 1 / 3 - apart):
+        scene = _scene(
+            material=ElasticTensor.isotropic(1.0, nu),
+            supports=[Support.where(lambda x, y: y < -0.35, displacement=0.0)],
+            loads=[Load.body_force((0.0, 1.0), where=lambda x, y: y > 0.4)],
+            cracks=[Crack((-0.6, 0.0), (0.0, 0.0))],
+        )
+        tips.append(scene.solve().displacement[:, 1].max())
+    assert tips[1] == pytest.approx(tips[0], rel=1e-8)
