@@ -5,6 +5,10 @@ class SceneError(ValueError):
     """What a scene asks for cannot be: an empty region, a rigid mode left free, a wrong key."""
 
 
+class NoOutlineError(SceneError):
+    """A region does not say where its edges run, and something needs to know."""
+
+
 class CalibrationError(ValueError):
     """No micromoduli of the wanted kind reproduce the given tensor on the given family."""
 

@@ -89,6 +89,7 @@ def solve(
         setup_seconds=discretisation.seconds + (ready - begun),
         solve_seconds=perf_counter() - ready,
         peak_memory=_peak_memory(),
+        warnings=discretisation.warnings,
     )
     return Solution(discretisation, discretisation.field(x), statistics, inverse)
 

@@ -18,8 +18,8 @@ from scipy.ndimage import distance_transform_edt
 from scipy.spatial import KDTree
 
 from ..arrays import Array, Indices, Mask
-from ..errors import SceneError
-from ..geometry import Crack, Lattice, Outline
+from ..errors import NoOutlineError, SceneError
+from ..geometry import Body, Crack, Lattice, Outline
 from ..geometry.outline import apart
 from ..material import Family
 from .ended import EndedBonds
@@ -100,12 +100,19 @@ class Bonds:
         near = np.nonzero(edge_near)[0]
         #: Particles that lack at least one neighbour.
         self.short: Indices = near[~self.exist(near).all(axis=0)]
+        #: What the answer leaves out or settles by a rule, one sentence each.
+        self.warnings: tuple[str, ...] = ()
         cut_at, cut = self._cut_bonds(cracks)
-
+        #: Particles with bonds that leave the body on their way to a neighbour that is there, and
+        #: which these are, shape (family size, particles). They do not exist.
+        self.outside_at: Indices
+        self.outside: Mask
+        self.outside_at, self.outside = self._outside()
         broken_at, broken_there = self._both_ends(broken)
 
         special = np.zeros(lattice.count, dtype=bool)
         special[cut_at] = True
+        special[self.outside_at] = True
         special[broken_at] = True
         if treatment == "volume":
             volume = np.full(lattice.count, full_volume(family))
@@ -128,8 +135,8 @@ class Bonds:
             for o, (dx, dy) in enumerate(family.offsets):
                 there = volumes[rows[self.special] + dy, columns[self.special] + dx]
                 factors[o] *= volume_factor(family, here, there)
-        if len(cut_at):
-            factors[:, np.searchsorted(self.special, cut_at)] *= ~cut
+        for at, gone in ((cut_at, cut), (self.outside_at, self.outside)):
+            factors[:, np.searchsorted(self.special, at)] *= ~gone
         if len(broken_at):
             factors[:, np.searchsorted(self.special, broken_at)] *= ~broken_there
         #: Factor of each bond of a special particle, shape (family size, special).
@@ -176,7 +183,7 @@ class Bonds:
         return result
 
     def exist(self, particles: Indices) -> Mask:
-        """Which neighbours the particles have, shape (family size, particles)."""
+        """Which neighbours the particles have, reached or not, shape (family size, particles)."""
         rows, columns = (axis[particles] for axis in self.lattice.rows_columns)
         dx, dy = self.family.offsets.T
         return self.lattice.mask[rows + dy[:, None], columns + dx[:, None]]
@@ -212,16 +219,16 @@ class Bonds:
     ) -> EndedBonds | None:
         """The bonds that end at a surface which a particle with a free unknown feels."""
         lattice, family = self.lattice, self.family
-        particles = np.union1d(self.short, cut_at)
+        particles = np.union1d(np.union1d(self.short, cut_at), self.outside_at)
         # A particle that has lost all its bonds to others holds no surface.
         rubble = broken_at[self.strengths_of(broken_at).sum(axis=0) == 0]
         particles = np.setdiff1d(particles, rubble, assume_unique=True)
-        kept = np.isin(cut_at, particles)
-        cut_at, cut = cut_at[kept], cut[:, kept]
         if not free[particles].any():
             return None
         lost = ~self.exist(particles)
-        lost[:, np.searchsorted(particles, cut_at)] |= cut
+        for at, gone in ((cut_at, cut), (self.outside_at, self.outside)):
+            kept = np.isin(at, particles)
+            lost[:, np.searchsorted(particles, at[kept])] |= gone[:, kept]
         apart(cracks)
         outline = Outline.of(lattice.region, cracks, lattice.spacing, sharp_tips=sharp_tips)
         free = free[particles]
@@ -235,6 +242,18 @@ class Bonds:
         near = ~free & np.isfinite(distance)
         others = EndedBonds.of(lattice, family, outline, particles[near], lost[:, near])
         return ended.joined(others).with_chords(lattice, family)
+
+    def _outside(self) -> tuple[Indices, Mask]:
+        """Particles with bonds that leave the body on their way, and which these are."""
+        try:
+            body = Body.of(self.lattice)
+        except NoOutlineError:
+            self.warnings += (
+                f"a {type(self.lattice.region).__name__} has no outline: whether bonds stay inside "
+                f"the body is judged by their particles alone, and slots are bridged",
+            )
+            return np.zeros(0, dtype=np.int64), np.zeros((self.family.size, 0), dtype=bool)
+        return body.leaving(self.lattice, self.family.offsets)
 
     def _both_ends(self, broken: Mask | None) -> tuple[Indices, Mask]:
         """Particles with broken bonds and which, from the half offsets of one end."""
@@ -336,6 +355,7 @@ def damage(bonds: Bonds) -> Array:
     special = bonds.special
     if len(special):
         exist = bonds.exist(special)
+        exist[:, np.searchsorted(special, bonds.outside_at)] &= ~bonds.outside
         gone = exist & (bonds.strengths == 0)
         whole = np.einsum("o,on->n", family.fraction, exist.astype(np.float64))
         lost = np.einsum("o,on->n", family.fraction, gone.astype(np.float64))

@@ -127,6 +127,7 @@ class Equilibrium:
             setup_seconds=self.sound.seconds,
             solve_seconds=self.seconds,
             peak_memory=0,
+            warnings=self.sound.warnings,
         )
         now = self.discretisation(factor)
         return Solution(now, now.field(factor * self.x), statistics, self.preconditioner)

@@ -1,12 +1,14 @@
 """Bodies: regions, their particles, their outline, and every question of place."""
 
 from .edge_quadrature import Quadrature
+from .inside import Body
 from .lattice import Lattice, select
 from .outline import Outline
 from .regions import Crack, Point, Region, Where, disc, polygon, rectangle
 from .strips import volumes
 
 __all__ = [
+    "Body",
     "Crack",
     "Lattice",
     "Outline",

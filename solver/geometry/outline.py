@@ -18,23 +18,22 @@ from numpy.typing import NDArray
 from ..arrays import Array, Indices
 from ..errors import SceneError
 from .regions import Crack, Region
+from .rings import CLOSE, EDGE_STEP, SHARP, rings
 
-# Vertices nearer to each other than this share of the step become one.
-_CLOSE = 0.3
-# Distance of nodes in spacings. On edges that run obliquely through the lattice some cells average
-# out where bonds happen to end (of 1, 1.5, 2, 2.5, 3, 4 cells 2.5 had the smallest errors on turned
-# rectangles, discs and holes). Between two rows of cells all nodes see the same bonds if they are a
-# spacing apart: a free square then conducts exactly and converges at second order (with 2.5 at
-# order 1.5). On a crack's face the last edge before the tip, where the faces part linearly, sets
-# how far the lattice sees the crack reach: of 1, 2, 3 cells one has the smallest error in mode I
-# and less than separate tips in mode II.
-_EDGE_STEP, _LEVEL_STEP, _FACE_STEP = 2.5, 1.0, 1.0
-# Turn (rad) that makes a corner.
-_SHARP = 0.6
+# Distance of nodes in spacings, `EDGE_STEP` elsewhere: on edges that run obliquely through the
+# lattice some cells average out where bonds happen to end (of 1, 1.5, 2, 2.5, 3, 4 cells 2.5 had
+# the smallest errors on turned rectangles, discs and holes). Between two rows of cells all nodes
+# see the same bonds if they are a spacing apart: a free square then conducts exactly and converges
+# at second order (with 2.5 at order 1.5). On a crack's face the last edge before the tip, where the
+# faces part linearly, sets how far the lattice sees the crack reach: of 1, 2, 3 cells one has the
+# smallest error in mode I and less than separate tips in mode II.
+_LEVEL_STEP, _FACE_STEP = 1.0, 1.0
 # Share of the step within which a line counts as touching.
-_TIE = 1e-9
+_TIE = 1e-6
 # Shares of a bond that are the same.
 _SAME = 1e-7
+# Share of an edge within which a point on it counts as at its node.
+_AT_NODE = 1e-6
 # Bonds whose candidates are compared at once.
 _CHUNK = 100_000
 
@@ -85,12 +84,12 @@ class Outline:
             face.extend([kind] * len(links))
             count += len(points)
 
-        step = _EDGE_STEP * spacing
-        for ring in _rings(region, step):
-            line = _walk(ring, step, closed=True, level=_LEVEL_STEP * spacing)
+        step = EDGE_STEP * spacing
+        for ring in (ring for body in rings(region, spacing) for ring in body):
+            line = _walk(np.append(ring, ring[:1], axis=0), step, level=_LEVEL_STEP * spacing)
             chain(*_split(line, cracks, step), 0)
         for crack in cracks:
-            line = _walk(np.array(crack.points), _FACE_STEP * spacing, closed=False)
+            line = _walk(np.array(crack.points), _FACE_STEP * spacing, last=True)
             size = len(line)
             order = np.arange(size)
             if crack.closed:
@@ -145,10 +144,13 @@ class Outline:
             curved edge miss a particle or its neighbour.
         """
         edge, position, share = self._hit(start, bond, 0.0, 1.0)
+        # The neighbour, or the particle itself, lies in the sliver between a curved edge and its
+        # chord: the bond's line meets the chord a little beyond its end or its start.
+        beyond = self._beyond(start, bond)
+        back = np.nonzero(beyond)[0]
+        edge[back], position[back], share[back] = self._hit(start[back], bond[back], -1.0, 0.0)
         lost = edge < 0
         if lost.any():
-            # The neighbour, or the particle itself, lies in the sliver between a curved edge and
-            # its chord: the bond's line meets the chord a little beyond its end or its start.
             edge[lost], position[lost], share[lost] = self._hit(start[lost], bond[lost], -1.0, 2.0)
         return edge, np.clip(position, 0.0, 1.0), share
 
@@ -164,7 +166,7 @@ class Outline:
         count = len(start)
         edge, position, share = np.full(count, -1), np.zeros(count), np.zeros(count)
         first, last = self.nodes[self.edges[:, 0]], self.nodes[self.edges[:, 1]]
-        tree, outward = shapely.STRtree(self._lines), self.outward
+        tree = shapely.STRtree(self._lines)
         for begin in range(0, count, _CHUNK):
             part = slice(begin, min(begin + _CHUNK, count))
             ends = [start[part] + where * bond[part] for where in (low, high)]
@@ -174,7 +176,7 @@ class Outline:
             # Bonds leave through an edge and do not enter: particles may lie in a sliver. A
             # particle sees the face of a crack that is turned to it; one on the crack's line
             # belongs to the left, as for bonds that the crack cuts.
-            leaves = np.einsum("ki,ki->k", bond[path], outward[met]) > 0
+            leaves = self._leaves(bond[path], met, where)
             valid &= np.where(self.face[met] == 0, leaves, self._turned(start[path], met))
             # At a mouth both ends of the split edge are met: only the one on the particle's own
             # side of the crack counts.
@@ -189,6 +191,39 @@ class Outline:
             chosen = order[nearest]
             edge[path], position[path], share[path] = met[chosen], where[chosen], depth[chosen]
         return edge, position, share
+
+    def _leaves(self, bond: Array, edge: Indices, position: Array) -> NDArray[np.bool_]:
+        """Whether bonds lead out of the body where they meet edges of the region."""
+        outward = self.outward
+        leaves = np.einsum("ki,ki->k", bond, outward[edge]) > 0
+        before, after = self.beside
+        # Through a re-entrant corner they leave if they do so through both of its edges.
+        first, last = (self.edges[edge, end] for end in (0, 1))
+        other = np.where(position < _AT_NODE, before[first], -1)
+        other = np.where(position > 1 - _AT_NODE, after[last], other)
+        both = np.nonzero((other >= 0) & (self.face[edge] == 0))[0]
+        one, two = outward[edge[both]], outward[other[both]]
+        turn = one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0]
+        turn[position[both] < _AT_NODE] *= -1
+        inner = both[turn < -_TIE]
+        leaves[inner] &= np.einsum("ki,ki->k", bond[inner], outward[other[inner]]) > 0
+        return leaves
+
+    def _beyond(self, start: Array, bond: Array) -> NDArray[np.bool_]:
+        """Whether bonds lead out from a particle that lies beyond an edge, on to another one."""
+        beyond = np.zeros(len(start), dtype=bool)
+        own = np.nonzero(self.face == 0)[0]
+        places, which = np.unique(start, axis=0, return_inverse=True)
+        points, tree = shapely.points(places), shapely.STRtree(self._lines[own])
+        at, nearest = tree.query_nearest(points, all_matches=False)
+        edge = np.full(len(places), -1)
+        edge[at] = own[nearest]
+        away = places - self.nodes[self.edges[edge, 0]]
+        out = np.einsum("ki,ki->k", away, self.outward[edge])
+        off = (out > _TIE * self.length[edge])[which.ravel()]
+        edge = edge[which.ravel()]
+        beyond[off] = np.einsum("ki,ki->k", bond[off], self.outward[edge[off]]) > 0
+        return beyond
 
     def _behind(self, points: Array, targets: Array) -> NDArray[np.bool_]:
         """Whether a crack lies between each point and its target."""
@@ -286,49 +321,22 @@ def apart(cracks: Sequence[Crack]) -> None:
             )
 
 
-def _rings(region: Region, step: float) -> list[Array]:
-    """Closed rings of a region, the body to the left, last point unlike the first."""
-    shape = region.outline(step)
-    polygons = shapely.get_parts(shape)
-    rings = []
-    for polygon in polygons:
-        turned = shapely.geometry.polygon.orient(polygon, 1.0)
-        rings += [turned.exterior, *turned.interiors]
-    found = [shapely.get_coordinates(ring)[:-1] for ring in rings]
-    # Where a ring begins, and which is first, must not depend on rounding.
-    keys = [np.rint(ring / step * 1e5) for ring in found]
-    starts = [np.lexsort(key.T)[0] for key in keys]
-    order = sorted(range(len(found)), key=lambda k: tuple(keys[k][starts[k]][::-1]))
-    return [np.roll(found[k], -starts[k], axis=0) for k in order]
-
-
-def _walk(points: Array, step: float, closed: bool, level: float | None = None) -> Array:
-    """The polyline with vertices at most `step` apart, without vertices too close to tell.
+def _walk(points: Array, step: float, level: float | None = None, last: bool = False) -> Array:
+    """The polyline with vertices at most `step` apart; its end too if `last`.
 
     Pieces that run between two rows (or columns) of cells of size `level` have vertices that far
     apart, if it is given.
     """
-    size = np.hypot(*(np.roll(points, -1, axis=0) - points).T)
-    if closed:
-        kept, since = [], np.inf
-        for point, ahead in zip(points, size, strict=True):
-            if since >= _CLOSE * step:
-                kept.append(point)
-                since = 0.0
-            since += ahead
-        if len(kept) > 3 and np.hypot(*(kept[-1] - kept[0])) < _CLOSE * step:
-            kept.pop()
-        points = np.array([*kept, kept[0]])
     pieces = []
-    for first, last in pairwise(points):
-        along = np.abs(last - first)
+    for first, second in pairwise(points):
+        along = np.abs(second - first)
         most = step
         if level is not None and along.min() <= 1e-9 * along.max():
             row = first[int(np.argmin(along))] / level
             most = level if abs(row - np.rint(row)) < 1e-6 else step
         count = max(1, int(np.ceil(np.hypot(*along) / most - 1e-6)))
-        pieces.append(first + np.linspace(0, 1, count, endpoint=False)[:, None] * (last - first))
-    if not closed:
+        pieces.append(first + np.linspace(0, 1, count, endpoint=False)[:, None] * (second - first))
+    if last:
         pieces.append(points[-1:])
     return np.concatenate(pieces)
 
@@ -347,7 +355,7 @@ def _split(ring: Array, cracks: Sequence[Crack], step: float) -> tuple[Array, In
                 near = np.hypot(*(ring - point).T)
                 place = int(near.argmin())
                 free = near[place] < _TIE * step or not _is_corner(ring, place)
-                if near[place] < _CLOSE * step and free:
+                if near[place] < CLOSE * step and free:
                     ring[place] = point
                 else:
                     place = int(k) + 1
@@ -368,7 +376,7 @@ def _is_corner(ring: Array, place: int) -> bool:
     """Whether a closed ring turns sharply there: corners of a body stay where they are."""
     before, here, after = ring[place - 1], ring[place], ring[(place + 1) % len(ring)]
     a, b = here - before, after - here
-    return bool(abs(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)) > _SHARP)
+    return bool(abs(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)) > SHARP)
 
 
 def _meet(

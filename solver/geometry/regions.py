@@ -23,7 +23,7 @@ import shapely
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..errors import SceneError
+from ..errors import NoOutlineError
 
 Point = tuple[float, float]
 
@@ -54,11 +54,11 @@ class Region(ABC):
 
         Raises
         ------
-        SceneError
+        NoOutlineError
             If this kind of region has no outline: then only surface treatments that need none
-            can be used.
+            can be used, and bonds are judged by their particles alone.
         """
-        raise SceneError(
+        raise NoOutlineError(
             f"a {type(self).__name__} has no outline: surface='extrapolated' and loads on edges "
             f"need one"
         )

@@ -138,6 +138,11 @@ class Discretisation:
         """Whether single bonds are broken (cracks that were always there do not count)."""
         return self.scene.broken is not None
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the answer leaves out or settles by a rule, one sentence each."""
+        return self.bonds.warnings
+
     def right_hand_side(self) -> Array:
         """Load of the active unknowns less what the prescribed ones exert, flattened."""
         operator = self.operator

@@ -66,6 +66,13 @@ class Cells(Region):
         return self.shape
 
 
+class Sites(Cells):
+    """Cells whose edges nobody knows: particles join wherever the family says."""
+
+    def outline(self, step: float) -> shapely.Geometry:
+        return Region.outline(self, step)
+
+
 def block(columns: int, rows: int, spacing: float = 1.0) -> Cells:
     """A rectangle of cells."""
     return Cells(np.ones((rows, columns), dtype=bool), spacing)

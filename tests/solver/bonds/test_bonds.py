@@ -5,10 +5,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from solver import Crack, Family, SceneError, disc, rectangle
-from solver.bonds import Bonds
+from solver import (
+    ConductivityTensor,
+    Crack,
+    ElasticTensor,
+    Family,
+    Scene,
+    SceneError,
+    Support,
+    disc,
+    rectangle,
+)
+from solver.analyses.statics import solve
+from solver.bonds import Bonds, damage
 from solver.geometry import Lattice
-from tests.solver.bodies import Cells, block, cut_by, exact, few, masks
+from solver.operators import BondOperator
+from tests.solver.bodies import Cells, Sites, block, cut_by, exact, few, masks
 
 eighths = st.integers(-8, 64).map(lambda k: k / 8)
 
@@ -29,6 +41,17 @@ def pair_factors(bonds):
         assert not values[there < 0].any()
         for p in np.flatnonzero(there >= 0):
             found[int(p), int(there[p])] = float(values[p])
+    return found
+
+
+def leaving(bonds):
+    """Directed bonds that leave the body between two particles."""
+    lattice = bonds.lattice
+    number, (rows, columns) = lattice.number(), lattice.rows_columns
+    found = set()
+    for p, lost in zip(bonds.outside_at, bonds.outside.T, strict=True):
+        for dx, dy in bonds.family.offsets[lost]:
+            found.add((int(p), int(number[rows[p] + dy, columns[p] + dx])))
     return found
 
 
@@ -53,8 +76,9 @@ def test_short_particles_are_those_that_lack_a_neighbour(mask, m):
         for r, c in zip(rows, columns, strict=True)
     ]
     np.testing.assert_array_equal(bonds.short, np.flatnonzero(lacks))
-    assert not len(bonds.special)
-    assert all(factor == 1.0 for factor in pair_factors(bonds).values())
+    lost = leaving(bonds)
+    np.testing.assert_array_equal(bonds.special, sorted({p for p, _ in lost}))
+    assert all(factor == (pair not in lost) for pair, factor in pair_factors(bonds).items())
 
 
 @exact
@@ -87,6 +111,73 @@ def test_factors_are_the_same_from_both_ends(seed):
     factors = pair_factors(bonds)
     for (p, q), factor in factors.items():
         assert factors[q, p] == factor
+
+
+# ---- bodies, not particles -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("treatment", ["none", "volume", "extrapolated"])
+def test_bodies_a_cell_apart_exchange_nothing(treatment):
+    held = [
+        Support.where(lambda x, y: x < -0.9, temperature=0.0),
+        Support.where(lambda x, y: x > 0.9, temperature=1.0),
+    ]
+    region = rectangle(2.0, 0.4) - rectangle(0.04, 1.0)
+    solution = Scene(
+        region, 0.02, ConductivityTensor.isotropic(1.0), held, m=5, surface=treatment
+    ).solve()
+    temperature, left = solution.temperature, solution.points[:, 0] < 0
+    # The solver's tolerance.
+    np.testing.assert_allclose(temperature[left], 0.0, atol=1e-15)
+    np.testing.assert_allclose(temperature[~left], 1.0, rtol=1e-9)
+    # With one end left alone the other body floats.
+    with pytest.raises(SceneError, match="no temperature is prescribed on the part about"):
+        Scene(region, 0.02, ConductivityTensor.isotropic(1.0), held[:1], surface=treatment).solve()
+
+
+def pulled(region, surface, cracks=(), conductive=False, cells=24, m=3):
+    """Twice the energy of a plate between two grips that part."""
+    h = 1 / cells
+    if conductive:
+        material = ConductivityTensor.isotropic(1.0)
+        grips = Support.where(lambda x, y: abs(y) > 0.5, temperature=lambda x, y: np.sign(y))
+    else:
+        material = ElasticTensor.isotropic(1.0, 0.25)
+        grips = Support.where(
+            lambda x, y: abs(y) > 0.5,
+            displacement=lambda x, y: np.stack([0 * x, np.sign(y)], axis=-1),
+            rotation=0.0,
+        )
+    parts = Scene(region, h, material, [grips], cracks=cracks, m=m, surface=surface).discretise()
+    u = solve(parts).unknowns
+    operator = BondOperator(parts.bonds, parts.operator.moduli, np.zeros_like(parts.prescribed))
+    return float(u.ravel() @ operator.matvec(u.ravel()))
+
+
+@pytest.mark.parametrize("conductive", [False, True])
+@pytest.mark.parametrize("surface", ["none", "volume", "extrapolated"])
+def test_a_slot_of_any_width_holds_no_more_than_a_crack(surface, conductive):
+    tall = rectangle(1.0, 1.25)
+    crack = pulled(tall, surface, [Crack((-0.3, 0.0), (0.3, 0.0))], conductive)
+    last = pulled(tall, surface, (), conductive)
+    assert crack < 0.85 * last
+    for cells in (0.1, 0.5, 1.0, 3.0):
+        slotted = pulled(tall - rectangle(0.6, cells / 24), surface, (), conductive)
+        assert slotted < (1 + 1e-9) * min(crack, last)
+        last = slotted
+
+
+def test_damage_counts_the_bonds_that_a_body_has():
+    region = rectangle(10.0, 10.0) - rectangle(0.1, 6.0)
+    assert not damage(bonds_of(region, m=3)).any()
+    with_crack = bonds_of(region, m=3, cracks=[Crack((-6.0, 0.0), (6.0, 0.0))])
+    assert damage(with_crack).max() > 0.3
+
+
+def test_a_region_without_edges_is_judged_by_its_particles_and_says_so():
+    bonds = bonds_of(Sites(np.ones((4, 4), dtype=bool)))
+    assert "Sites has no outline" in bonds.warnings[0]
+    assert not bonds_of(block(4, 4)).warnings
 
 
 # ---- ties ---------------------------------------------------------------------------------------

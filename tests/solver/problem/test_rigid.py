@@ -149,9 +149,10 @@ def test_bodies_apart():
     left = Support.where(lambda x, y: x < 2, **LEFT)
     with pytest.raises(SceneError, match=r"the part about \(12, 3\) \(36 particles\)"):
         discretise(POLAR, left, region=Cells(mask))
-    # A gap narrower than the horizon is bridged by bonds: nonlocal contact, as the model has it.
+    # A gap narrower than the horizon is a gap.
     mask[:, 6:9] = True
-    discretise(POLAR, left, region=Cells(mask))
+    with pytest.raises(SceneError, match=r"the part about \(10.5, 3\) \(54 particles\)"):
+        discretise(POLAR, left, region=Cells(mask))
 
 
 def test_bodies_that_touch_at_a_corner_without_a_bond_are_two():
