@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from cmverify.case import Array, Case, Field, FieldSet, Measurement
+from cmverify.case import Array, Case, Check, Field, FieldSet, Measurement
 from cmverify.cases.common import adapters, materials
 from cmverify.cases.surfaces import bodies
 from cmverify.cases.surfaces.bodies import Treatment
@@ -167,9 +167,7 @@ def _heated(
     name: str,
     title: str,
     body: Body,
-    bounds: dict[int, float],
-    order: float = 1.5,
-    floor: float = 1e-11,
+    checks: tuple[Check, ...],
 ) -> Case:
     return Case(
         name=name,
@@ -181,7 +179,7 @@ def _heated(
             "homogeneous up to its sides."
         ),
         methods=bodies.methods(partial(heat, body), other=None, conductive=True),
-        checks=(bodies.converging("temperature", bounds, order, floor=floor),),
+        checks=checks,
         quantities=_CONDUCTIVE,
         primary="temperature",
         featured="bond/extrapolated",
@@ -206,14 +204,24 @@ CASES = (
     ),
     # Exact: all nodes between rows of cells see the same bonds; 8e-13 measured at 100 cells.
     _heated(
-        "insulated-square", "Square with two insulated edges", SQUARE, {20: 1e-11}, floor=1e-11
+        "insulated-square",
+        "Square with two insulated edges",
+        SQUARE,
+        (
+            Check(
+                "bond/extrapolated",
+                "temperature",
+                {20: 1e-11},
+                source="rounding: bonds between two rows are alike up to an edge",
+                exact=True,
+            ),
+        ),
     ),
     _heated(
         "insulated-turned-rectangle",
         "Rectangle, turned in the lattice, with two insulated edges",
         TURNED,
-        {20: 2.7e-3, 50: 1.2e-3, 100: 4e-4},
         # 1.2 over six spacings from 20 to 100 cells, 1.0 over the five of the standard level.
-        0.9,
+        (bodies.converging("temperature", {20: 2.7e-3, 50: 1.2e-3, 100: 4e-4}, 0.9),),
     ),
 )
