@@ -155,7 +155,7 @@ class Method:
     ----------
     name : str
         Such as "bond/lattice" or "fem/P2".
-    kind : "bond" or "fem"
+    kind : "bond", "fem" or "exact"
     run : callable
         Takes a resolution n (spacing or mesh size a/n) and returns a `Measurement`.
     resolutions : mapping from Level to a tuple of ascending n
@@ -164,7 +164,7 @@ class Method:
     """
 
     name: str
-    kind: Literal["bond", "fem"]
+    kind: Literal["bond", "fem", "exact"]
     run: Callable[[int], Measurement]
     resolutions: Mapping[Level, tuple[int, ...]]
     warm_up: Callable[[], None] = nothing_to_compile

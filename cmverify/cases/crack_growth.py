@@ -296,10 +296,12 @@ TRENDS = (Strip(m=3), Strip("bone", m=3), Strip(m=7))
 
 
 def _checks(name: str) -> list[Check]:
+    # Along an axis at m = 3 a third of a per cent and half of one were reached.
+    sharp = name == "isotropic 0° m=3"
     return [
-        Check(name, "release at initiation", {16: 0.05}, source=SOURCE),
-        Check(name, "release in growth", {16: 0.05}, source=SOURCE),
-        Check(name, "dissipation", {16: 0.05}, source=SOURCE),
+        Check(name, "release at initiation", {16: 0.01 if sharp else 0.05}, source=SOURCE),
+        Check(name, "release in growth", {16: 0.01 if sharp else 0.05}, source=SOURCE),
+        Check(name, "dissipation", {16: 0.012 if sharp else 0.05}, source=SOURCE),
         # None need to stray.
         Check(name, "stray", {16: 0.05}, source=SOURCE, exact=True),
         Check(name, "critical K", {16: 0.1}, source="Sih, Paris and Irwin's modulus"),

@@ -60,6 +60,7 @@ def build(summary: Sequence[CaseResult], info: RunInfo, folder: Path) -> Path:
         verdicts=[v for result in summary for v in result.verdicts],
         sections=_sections(summary, folder, info.jobs),
         stability=(folder / "stability.html").is_file(),
+        faults=(folder / "faults.html").is_file(),
     )
     path = folder / "index.html"
     write_text(path, page)
