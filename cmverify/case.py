@@ -18,6 +18,10 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
+#: What is left of an error where arithmetic is all that is wrong.
+ROUNDING = 1e-14
+
+
 class Level(StrEnum):
     """How much time a run may take: seconds, a minute, or the paper's resolution."""
 
@@ -151,7 +155,7 @@ class Method:
     ----------
     name : str
         Such as "bond/lattice" or "fem/P2".
-    kind : "bond" or "fem"
+    kind : "bond", "fem" or "exact"
     run : callable
         Takes a resolution n (spacing or mesh size a/n) and returns a `Measurement`.
     resolutions : mapping from Level to a tuple of ascending n
@@ -160,7 +164,7 @@ class Method:
     """
 
     name: str
-    kind: Literal["bond", "fem"]
+    kind: Literal["bond", "fem", "exact"]
     run: Callable[[int], Measurement]
     resolutions: Mapping[Level, tuple[int, ...]]
     warm_up: Callable[[], None] = nothing_to_compile
@@ -182,7 +186,8 @@ class OrderBand:
     since : int
         Resolutions below this one are pre-asymptotic and are not used.
     floor : float
-        Where all errors are below it, rounding decides the order and none is judged.
+        Where all errors are below it, rounding decides the order: a method that converges cannot
+        get there, and the check fails.
     fitted : bool
         Fit one order to all resolutions instead of taking it between the two finest: for
         unstructured meshes, whose regularity differs from one to the next.
@@ -207,7 +212,11 @@ class Check:
     equals : mapping from resolution to an exact value
     order : OrderBand, optional
     source : str
-        Where the bounds come from.
+        Where the bounds come from, in words that a reader of the paper understands: theory, the
+        paper's figure, another method, or a measurement with its margin.
+    exact : bool
+        Whether the quantity may be zero, or is but for rounding. If not, an error that is too
+        good fails as one too large does: see `least_at`.
     """
 
     method: str
@@ -216,15 +225,29 @@ class Check:
     equals: Mapping[int, float] = field(default_factory=dict)
     order: OrderBand | None = None
     source: str = ""
+    exact: bool = False
 
     def __post_init__(self) -> None:
+        name = f"check of {self.method}/{self.quantity}"
         if not self.at_most and not self.equals and self.order is None:
-            raise ValueError(f"check of {self.method}/{self.quantity} can never fail: no bound")
+            raise ValueError(f"{name} can never fail: no bound")
+        if self.exact and self.order is not None:
+            raise ValueError(f"{name}: what is exact has no order of convergence")
 
     def bound_at(self, resolution: int) -> float | None:
         """The absolute bound that holds at a resolution, or None below the coarsest listed."""
         listed = [n for n in self.at_most if n <= resolution]
         return self.at_most[max(listed)] if listed else None
+
+    def least_at(self, resolution: int) -> float:
+        """What the error of a method that is not exact cannot come below.
+
+        Follows from the method and not from what was measured, so that an honest gain passes: its
+        highest order and two more, h = 1/resolution; without an order the floor of rounding.
+        """
+        if self.order is None:
+            return ROUNDING
+        return max(self.order.floor, float(resolution) ** -(self.order.high + 2.0))
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ import typer
 from typer.core import TyperGroup
 
 from cmverify.case import Level
+from cmverify.faults.command import faults
 from cmverify.studies.speed.command import speed
 from cmverify.studies.stability.command import stability
 
@@ -39,6 +40,7 @@ Names = Annotated[list[str] | None, typer.Argument(metavar="[CASE]...", help="Ca
 Folder = Annotated[Path, typer.Option("--out", help="Folder of the run and its report.")]
 
 
+app.command()(faults)
 app.command()(speed)
 app.command()(stability)
 

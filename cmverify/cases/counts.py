@@ -31,7 +31,12 @@ CASES = (
         ),
         methods=(Method("bond/lattice", "bond", count, LADDER),),
         checks=(
-            Check("bond/lattice", "particles", equals=COUNTS, source="issue A, what must hold"),
+            Check(
+                "bond/lattice",
+                "particles",
+                equals=COUNTS,
+                source="printed in Sects. 2.3.1 and 4.3.1, the last counted by hand",
+            ),
         ),
         quantities={"particles": "particles in the disc"},
         primary="particles",

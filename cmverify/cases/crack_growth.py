@@ -50,7 +50,7 @@ SLANTED = {Level.QUICK: (), Level.STANDARD: (16,), Level.PAPER: (16, 24)}
 COARSE = {Level.QUICK: (16,), Level.STANDARD: (16, 24), Level.PAPER: (16, 24)}
 COARSE_TOO = {**COARSE, Level.QUICK: ()}
 FINE = {Level.QUICK: (), Level.STANDARD: (), Level.PAPER: (24,)}
-SOURCE = "issue F, Energy"
+SOURCE = "Griffith: a unit of advance releases σ v and costs the fracture energy"
 
 
 @dataclass(frozen=True)
@@ -296,13 +296,16 @@ TRENDS = (Strip(m=3), Strip("bone", m=3), Strip(m=7))
 
 
 def _checks(name: str) -> list[Check]:
+    # Along an axis at m = 3 a third of a per cent and half of one were reached.
+    sharp = name == "isotropic 0° m=3"
     return [
-        Check(name, "release at initiation", {16: 0.05}, source=SOURCE),
-        Check(name, "release in growth", {16: 0.05}, source=SOURCE),
-        Check(name, "dissipation", {16: 0.05}, source=SOURCE),
-        Check(name, "stray", {16: 0.05}, source=SOURCE),
-        Check(name, "critical K", {16: 0.1}, source=SOURCE),
-        Check(name, "balance", {16: 1e-6}, source=SOURCE),
+        Check(name, "release at initiation", {16: 0.01 if sharp else 0.05}, source=SOURCE),
+        Check(name, "release in growth", {16: 0.01 if sharp else 0.05}, source=SOURCE),
+        Check(name, "dissipation", {16: 0.012 if sharp else 0.05}, source=SOURCE),
+        # None need to stray.
+        Check(name, "stray", {16: 0.05}, source=SOURCE, exact=True),
+        Check(name, "critical K", {16: 0.1}, source="Sih, Paris and Irwin's modulus"),
+        Check(name, "balance", {16: 1e-6}, source="ten tolerances of the solves", exact=True),
         # The grips give way by a fixed share of the horizon.
         Check(name, "grips", order=OrderBand(0.7, 1.3), source="first order in δ/H"),
     ]

@@ -2,8 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import ArrayLike
+
+
+def worst(values: Iterable[float]) -> float:
+    """The largest of some errors, NaN if one is: Python's and NumPy's ``max`` let NaN pass.
+
+    ``max(0.1, nan)`` is 0.1 and ``np.fmax`` ignores NaN by design; so does a loop with ``if``.
+
+    Raises
+    ------
+    ValueError
+        If there are none.
+
+    Examples
+    --------
+    >>> worst([0.1, float("nan"), 0.2])
+    nan
+    >>> worst([0.1, -0.3])
+    0.1
+    """
+    return float(np.max(np.fromiter(values, dtype=float)))
 
 
 def relative_l2(computed: ArrayLike, reference: ArrayLike) -> float:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
-from cmverify.case import Case, Check, Failed, Measurement, Outcome, Outcomes
+import numpy as np
+
+from cmverify.case import Case, Check, Failed, Level, Measurement, Outcome, Outcomes
 from cmverify.judge.convergence import fitted_order, observed_orders
 
-Kind = Literal["ran", "bound", "equal", "order"]
+Kind = Literal["ran", "silent", "bound", "equal", "order"]
 
 
 @dataclass(frozen=True)
@@ -18,7 +20,9 @@ class Verdict:
     """One line of the verdict table.
 
     `where` names the resolutions, `asked` the requirement in words, `margin` the share of the
-    bound that is used up (NaN where that has no meaning).
+    bound that is used up (NaN where that has no meaning). "ran" and "silent" are no checks: they
+    only ever fail, for a method that raised or measured what is no number, and for a case about
+    which nothing was said.
     """
 
     case: str
@@ -41,18 +45,34 @@ class Verdict:
 def judge(case: Case, outcomes: Outcomes) -> list[Verdict]:
     """Every verdict of a case.
 
-    A method that raised fails, checked or not; so does a quantity that is missing or not a
-    number. A check whose resolutions were not run gives no verdict: see `unjudged`.
+    A method that raised fails, checked or not, and so does any figure that is missing or not a
+    number, whether a check looks at it or not. A check speaks wherever its method was asked to
+    measure, so that the number of verdicts follows from what was asked for (`declared`) and not
+    from what came of it. A check whose resolutions were not run gives none: see `unjudged`.
     """
     verdicts: list[Verdict] = []
     for method, series in outcomes.items():
-        verdicts += _completion(case, method, series)
-    for check in case.checks:
-        series = outcomes.get(check.method, {})
-        done = {n: m for n, m in sorted(series.items()) if isinstance(m, Measurement)}
-        verdicts += _absolute(case, check, done)
-        verdicts += _order(case, check, done)
+        verdicts += _incidents(case, method, series)
+    asked = {method: tuple(sorted(series)) for method, series in outcomes.items()}
+    for check, where, kind in _questions(case, asked):
+        series = outcomes[check.method]
+        errors = [_value(series[n], check.quantity) for n in where]
+        answer = {"bound": _bound, "equal": _equal, "order": _order}[kind]
+        verdicts.append(answer(case, check, where, errors))
+    if outcomes and not any(v.kind not in ("ran", "silent") for v in verdicts):
+        verdicts.append(
+            Verdict(
+                case.name, case.featured, "any", "silent", _places(case, asked), 0.0,
+                "something is judged", False, "no check of this case judges what was run",
+            )
+        )  # fmt: skip
     return verdicts
+
+
+def declared(case: Case, level: Level) -> int:
+    """How many checks judge a case at a level, whatever its measurements will say."""
+    asked = {m.name: tuple(sorted(m.resolutions.get(level, ()))) for m in case.methods}
+    return sum(1 for _ in _questions(case, asked))
 
 
 def unjudged(case: Case, verdicts: list[Verdict]) -> list[Check]:
@@ -61,73 +81,119 @@ def unjudged(case: Case, verdicts: list[Verdict]) -> list[Check]:
     return [c for c in case.checks if (c.method, c.quantity) not in said]
 
 
-def _completion(case: Case, method: str, series: Mapping[int, Outcome]) -> list[Verdict]:
-    """One verdict a method: it ran everywhere and its figures are numbers."""
+def _questions(
+    case: Case, asked: Mapping[str, tuple[int, ...]]
+) -> Iterator[tuple[Check, tuple[int, ...], Literal["bound", "equal", "order"]]]:
+    """What the checks ask about these resolutions of each method, measured or not."""
+    for check in case.checks:
+        ladder = asked.get(check.method, ())
+        for n in ladder:
+            if check.bound_at(n) is not None:
+                yield check, (n,), "bound"
+            if n in check.equals:
+                yield check, (n,), "equal"
+        if check.order is not None:
+            used = tuple(n for n in ladder if n >= check.order.since)
+            used = used if check.order.fitted else used[-2:]
+            if len(used) >= 2:
+                yield check, used, "order"
+
+
+def _value(outcome: Outcome, quantity: str) -> float:
+    """The figure, NaN if there is none."""
+    if isinstance(outcome, Failed):
+        return math.nan
+    return outcome.quantities.get(quantity, math.nan)
+
+
+def _incidents(case: Case, method: str, series: Mapping[int, Outcome]) -> list[Verdict]:
+    """A verdict on a method that raised somewhere or measured what is no number; else none."""
     problems = []
     for n, outcome in sorted(series.items()):
         if isinstance(outcome, Failed):
             problems.append(f"{case.length}/{n}: {outcome.error}: {outcome.message}")
         else:
-            bad = [q for q, value in outcome.quantities.items() if not math.isfinite(value)]
-            problems += [f"{case.length}/{n}: {quantity} is not finite" for quantity in bad]
+            problems += [f"{case.length}/{n}: {what} is not finite" for what in not_finite(outcome)]
+    if not problems:
+        return []
     where = ", ".join(f"{case.length}/{n}" for n in sorted(series))
     return [
         Verdict(
             case.name, method, "completion", "ran", where, float(len(problems)),
-            "runs, figures finite", not problems, "; ".join(problems),
+            "runs, figures finite", False, "; ".join(problems),
         )
     ]  # fmt: skip
 
 
-def _absolute(case: Case, check: Check, done: Mapping[int, Measurement]) -> list[Verdict]:
-    verdicts = []
-    for n, measurement in done.items():
-        value = measurement.quantities.get(check.quantity, math.nan)
-        where = f"{case.length}/{n}"
-        bound = check.bound_at(n)
-        if bound is not None:
-            verdicts.append(
-                Verdict(
-                    case.name, check.method, check.quantity, "bound", where, value,
-                    f"≤ {bound:.2g}", value <= bound, _remark(value), value / bound,
-                )
-            )  # fmt: skip
-        if n in check.equals:
-            verdicts.append(
-                Verdict(
-                    case.name, check.method, check.quantity, "equal", where, value,
-                    f"= {check.equals[n]:,.10g}", value == check.equals[n], _remark(value),
-                )
-            )  # fmt: skip
-    return verdicts
+def not_finite(measurement: Measurement) -> list[str]:
+    """What of a measurement holds NaN or an infinity: figures, seconds, fields, curves."""
+    bad = [q for q, value in measurement.quantities.items() if not math.isfinite(value)]
+    bad += [f"seconds of {s}" for s, v in measurement.seconds.items() if not math.isfinite(v)]
+    bad += [
+        name
+        for name, value in measurement.statistics.items()
+        if not isinstance(value, str) and not math.isfinite(value)
+    ]
+    if measurement.fields is not None:
+        for name, item in measurement.fields.items.items():
+            if not (np.isfinite(item.computed).all() and np.isfinite(item.reference).all()):
+                bad.append(f"field {name}")
+    for line in measurement.lines:
+        for curve in line.curves:
+            if not (np.isfinite(curve.computed).all() and np.isfinite(curve.reference).all()):
+                bad.append(f"curve {curve.label!r} of {line.title!r}")
+    return bad
 
 
-def _order(case: Case, check: Check, done: Mapping[int, Measurement]) -> list[Verdict]:
+def _bound(case: Case, check: Check, where: tuple[int, ...], errors: list[float]) -> Verdict:
+    (n,), (value,) = where, errors
+    bound, least = check.bound_at(n), check.least_at(n)
+    assert bound is not None
+    message = _remark(value)
+    if value <= least and not check.exact:
+        message = f"too good to be true: this method cannot come below {least:.1g}"
+    asked = f"≤ {bound:.2g}"
+    passed = 0.0 <= value <= bound if check.exact else least < value <= bound
+    return Verdict(
+        case.name, check.method, check.quantity, "bound", f"{case.length}/{n}", value,
+        asked, passed, message, value / bound,
+    )  # fmt: skip
+
+
+def _equal(case: Case, check: Check, where: tuple[int, ...], errors: list[float]) -> Verdict:
+    (n,), (value,) = where, errors
+    return Verdict(
+        case.name, check.method, check.quantity, "equal", f"{case.length}/{n}", value,
+        f"= {check.equals[n]:,.10g}", value == check.equals[n], _remark(value),
+    )  # fmt: skip
+
+
+def _order(case: Case, check: Check, where: tuple[int, ...], errors: list[float]) -> Verdict:
     band = check.order
-    if band is None:
-        return []
-    ladder = [n for n in done if n >= band.since]
-    ladder = ladder if band.fitted else ladder[-2:]
-    if len(ladder) < 2:
-        return []
-    errors = [done[n].quantities.get(check.quantity, math.nan) for n in ladder]
+    assert band is not None
+    h = [1.0 / n for n in where]
+    message = ""
     if all(abs(e) <= band.floor for e in errors):
-        # All errors are rounding: the absolute bounds judge, an order has no meaning.
-        return []
-    h = [1.0 / n for n in ladder]
-    if band.fitted and all(math.isfinite(e) and e > 0.0 for e in errors):
+        # Rounding decides the order of such errors. What is exact has a bound and no order.
+        value, message = math.nan, f"too good to be true: every error is below {band.floor:.1g}"
+    elif not all(math.isfinite(e) for e in errors):
+        value = math.nan
+    elif band.fitted and all(e > 0.0 for e in errors):
         fit = fitted_order(h, errors)
         value = fit.order if fit else math.nan
     else:
         value = float(observed_orders(h, errors)[-1])
-    where = f"{case.length}/{ladder[0]} → {case.length}/{ladder[-1]}"
-    asked = f"order {band.low:g} … {band.high:g}"
-    return [
-        Verdict(
-            case.name, check.method, check.quantity, "order", where, value, asked,
-            band.low <= value <= band.high, _remark(value),
-        )
-    ]  # fmt: skip
+    return Verdict(
+        case.name, check.method, check.quantity, "order",
+        f"{case.length}/{where[0]} → {case.length}/{where[-1]}", value,
+        f"order {band.low:g} … {band.high:g}", band.low <= value <= band.high,
+        message or _remark(value),
+    )  # fmt: skip
+
+
+def _places(case: Case, asked: Mapping[str, tuple[int, ...]]) -> str:
+    found = sorted({n for ladder in asked.values() for n in ladder})
+    return ", ".join(f"{case.length}/{n}" for n in found)
 
 
 def _remark(value: float) -> str:

@@ -64,6 +64,7 @@ def build(summary: Sequence[CaseResult], info: RunInfo, folder: Path) -> Path:
         verdicts=[v for result in summary for v in result.verdicts],
         sections=_sections(summary, folder, info.jobs),
         stability=(folder / "stability.html").is_file(),
+        faults=(folder / "faults.html").is_file(),
     )
     path = folder / "index.html"
     write_text(path, page)
@@ -134,9 +135,7 @@ def _section(result: CaseResult, pictures: list[Picture], downloads: list[str]) 
         "pictures": pictures,
         "comparison": _comparison(result, points),
         "downloads": downloads,
-        "checks": sorted(
-            (v for v in result.verdicts if v.kind != "ran" or not v.passed), key=lambda v: v.passed
-        ),
+        "checks": sorted(result.verdicts, key=lambda v: v.passed),
         "tightest": result.tightest,
         "command": level_command,
         "solvers": _solvers(rows),
@@ -281,7 +280,7 @@ def _capital(text: str) -> str:
 
 def number(value: float | None, digits: int = 2) -> str:
     """A figure with few digits: 0.00123 as "1.2e-3", counts as they are."""
-    if value is None or math.isnan(value):
+    if value is None or not math.isfinite(value):
         return "n/a"
     if value == 0:
         return "0"

@@ -11,7 +11,7 @@ import numpy as np
 
 from cmverify.case import Array, Check, Level, Measurement, Method, OrderBand
 from cmverify.cases.common import adapters
-from cmverify.judge.norms import relative_l2
+from cmverify.judge.norms import relative_l2, worst
 
 if TYPE_CHECKING:
     from references.analytic.elasticity import PolynomialDisplacement
@@ -32,7 +32,9 @@ QUANTITIES = {
     "residual": "relative residual at the end, the larger of both fields",
     "margin": "stability margin: smallest relative eigenvalue of the condensed symbol",
 }
-SOURCE = "issue C, hard cases"
+SOURCE = "rounding: a quadratic field is exact on the lattice's own sums"
+#: Of verdicts on refusals.
+CONFIRMED = "energies of waves, linear programming, inertia"
 # The prescribed layer takes up less of the body as it is refined, so that the error falls faster
 # than with the second order of the lattice at first.
 ORDER = OrderBand(1.7, 3.4, since=48)
@@ -119,7 +121,7 @@ def measure(solid: Solid, n: int) -> Measurement:
     found["quartic"] = errors(solutions[1], fields[1])["displacement"]
     statistics = [s.statistics for s in solutions]
     found["iterations"] = float(max(s.iterations for s in statistics))
-    found["residual"] = max(s.residual for s in statistics)
+    found["residual"] = worst(s.residual for s in statistics)
     found["margin"] = statistics[0].margin
     return Measurement(
         statistics[0].unknowns,
@@ -160,11 +162,17 @@ class Row:
             n: room * i for n, i in zip(self.ladder[Level.PAPER], self.iterations, strict=True)
         }
         found = [
-            Check(name, "displacement", {24: self.floor}, source=SOURCE),
-            Check(name, "residual", {24: TOLERANCE}, source="the tolerance asked for"),
-            Check(name, "quartic", quartic, order=ORDER, source="measured; second order"),
-            Check(name, "iterations", steps, source="measured"),
+            Check(name, "displacement", {24: self.floor}, source=SOURCE, exact=True),
+            Check(name, "residual", {24: TOLERANCE}, source="the tolerance asked for", exact=True),
+            Check(
+                name,
+                "quartic",
+                quartic,
+                order=ORDER,
+                source="measured with half as much again; second order",
+            ),
+            Check(name, "iterations", steps, source="measured with half as much again"),
         ]
         if self.rotation:
-            found.append(Check(name, "rotation", {24: 10 * self.floor}, source=SOURCE))
+            found.append(Check(name, "rotation", {24: 10 * self.floor}, source=SOURCE, exact=True))
         return tuple(found)

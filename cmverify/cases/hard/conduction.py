@@ -11,7 +11,7 @@ import numpy as np
 from cmverify.case import Case, Check, Level, Measurement, Method, OrderBand
 from cmverify.cases.common import adapters, bond_energies, materials
 from cmverify.cases.hard import bodies
-from cmverify.judge.norms import relative_l2
+from cmverify.judge.norms import relative_l2, worst
 
 if TYPE_CHECKING:
     from solver.material import Calibration
@@ -110,7 +110,7 @@ def measure(conductor: Conductor, n: int) -> Measurement:
     found["exponential"] = relative_l2(solution.temperature[free], exponential.value(*points))
     solutions.append(solution.statistics)
     found["iterations"] = float(max(s.iterations for s in solutions))
-    found["residual"] = max(s.residual for s in solutions)
+    found["residual"] = worst(s.residual for s in solutions)
     found["margin"] = min(s.margin for s in solutions)
     last = solutions[-1]
     return Measurement(last.unknowns, found, statistics=adapters.solver_statistics(last))
@@ -122,6 +122,7 @@ CONDUCTORS = tuple(
     for angle in (0.0, np.pi / 8)
     for calibration in ("lattice", "positive")
 )
+EXACT = "rounding: a cubic field is exact on the lattice's own sums"
 ORDER = OrderBand(1.5, 3.4, since=48)
 # One and a half times the largest that was measured over all conductors.
 EXPONENTIAL = {24: 1.6e-4, 48: 6.8e-5, 96: 2.1e-5, 160: 8.1e-6}
@@ -133,11 +134,19 @@ def _checks(conductor: Conductor) -> tuple[Check, ...]:
     name = conductor.name
     exact = [m for m in HORIZONS if m not in conductor.refused_at]
     return (
-        *(Check(name, f"cubic m = {m}", {24: 1e-10}, source=bodies.SOURCE) for m in exact),
-        Check(name, "exponential", EXPONENTIAL, order=ORDER, source="measured; second order"),
-        Check(name, "iterations", ITERATIONS, source="measured"),
-        Check(name, "residual", {24: bodies.TOLERANCE}, source="the tolerance asked for"),
-        Check(name, "unexplained", equals={24: 0.0}, source=bodies.SOURCE),
+        *(Check(name, f"cubic m = {m}", {24: 1e-10}, source=EXACT, exact=True) for m in exact),
+        Check(
+            name,
+            "exponential",
+            EXPONENTIAL,
+            order=ORDER,
+            source="measured with half as much again; second order",
+        ),
+        Check(name, "iterations", ITERATIONS, source="measured with half as much again"),
+        Check(
+            name, "residual", {24: bodies.TOLERANCE}, source="the tolerance asked for", exact=True
+        ),
+        Check(name, "unexplained", equals={24: 0.0}, source="linear program"),
         *(
             Check(name, f"refused m = {m}", equals={24: 1.0}, source="linear program")
             for m in conductor.refused_at

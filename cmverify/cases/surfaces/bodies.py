@@ -23,7 +23,6 @@ LADDER = {
     Level.PAPER: (20, 30, 40, 50, 70, 100),
 }
 TOLERANCE = 1e-11
-SOURCE = "issue D, cases"
 
 
 def nearest(x0: float, y0: float) -> Callable[[Array, Array], np.ndarray]:
@@ -185,8 +184,8 @@ def converging(
 ) -> Check:
     """The check of the extrapolated treatment: bounds, and an order fitted to the whole ladder.
 
-    Bounds are what was measured with room for half as much again, all below the issue's 0.3 %
-    (homogeneous strain) and 0.5 % at 100 cells. The order asked for is 1.5; `least` is less where
+    Bounds are what was measured with room for half as much again. The order asked for is 1.5,
+    between the first order of an edge untreated and the second of the bulk; `least` is less where
     an oblique edge cuts the cells differently at every spacing, so that errors scatter about
     their trend. Below `floor` an error counts as none.
     """
@@ -195,7 +194,7 @@ def converging(
         quantity,
         bounds,
         order=OrderBand(least, most, floor=floor, fitted=True),
-        source=SOURCE,
+        source="exact field; measured with half as much again, order by theory",
     )
 
 

@@ -16,6 +16,7 @@ from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measuremen
 from cmverify.cases.common import adapters, sif
 from cmverify.cases.surfaces import bodies
 from cmverify.cases.surfaces.bodies import Treatment
+from cmverify.judge.norms import worst
 
 RATIOS = (0.2, 0.4, 0.6)
 #: The shortest half crack is 20 cells at W/100: a family of three leaves room for a ring.
@@ -88,7 +89,7 @@ def cracked(problem: Cracked, treatment: Treatment, m: float, n: int) -> Measure
             seconds[stage] = seconds.get(stage, 0.0) + spent
         computed.append(integral)
         exact.append(wanted)
-    found["K"] = max(found[f"K, a/W = {ratio}"] for ratio in ratios)
+    found["K"] = worst(found[f"K, a/W = {ratio}"] for ratio in ratios)
     curve = Curve("integral", np.array(ratios), np.array(computed)[:, 0], np.array(exact)[:, 0])
     line = LinePlot(
         "Stress intensity factor of the centre crack",
@@ -132,18 +133,23 @@ def _case(material: str) -> Case:
         methods=bodies.methods(partial(cracked, Cracked(material)), LADDER, M, other=None),
         checks=(
             *(
-                Check(f"bond/{t}", f"{kind}, a/W = {ratio}", {100: 0.02}, source=bodies.SOURCE)
+                Check(
+                    f"bond/{t}",
+                    f"{kind}, a/W = {ratio}",
+                    {100: 0.02},
+                    source="2 % of finite elements",
+                )
                 for ratio in RATIOS
                 for kind in ("K", "K by series")
                 for t in ("none", "volume")
             ),
-            # 2 % at W/100 is the issue's; these are half as much again as was reached.
+            # Half as much again as was reached; 2 % is what such methods are usually good for.
             *(
                 Check(
                     "bond/extrapolated",
                     f"{kind}, a/W = {ratio}",
                     {n: bound for n, bound in bounds.items() if ratio in resolved(M, n)},
-                    source=bodies.SOURCE,
+                    source="finite elements; measured with half as much again",
                 )
                 for ratio in RATIOS
                 for kind, bounds in BOUNDS.items()

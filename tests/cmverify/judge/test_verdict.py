@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from cmverify.case import Case, Check, Failed, Measurement, OrderBand
-from cmverify.judge.norms import relative_l2
-from cmverify.judge.verdict import judge, unjudged
+from cmverify.case import Case, Check, Failed, Level, Measurement, OrderBand
+from cmverify.judge.norms import relative_l2, worst
+from cmverify.judge.verdict import declared, judge, unjudged
 from tests.cmverify.toy_registry import toy, trapezium
 
 
@@ -21,7 +21,7 @@ def failed_kinds(case: Case, run) -> set[str]:
 
 def test_the_truth_passes_every_kind():
     verdicts = judge(toy(), outcomes(trapezium))
-    assert {v.kind for v in verdicts} == {"ran", "bound", "order"}
+    assert {v.kind for v in verdicts} == {"bound", "order"}
     assert all(v.passed for v in verdicts)
 
 
@@ -79,18 +79,89 @@ def test_nan_and_missing_quantities_fail():
 
 def test_a_method_that_raised_fails_even_without_a_check():
     case = toy(checks=())
-    (verdict,) = judge(case, {"bond/trapezium": {10: Failed("ArithmeticError", "no luck")}})
+    ran, silent = judge(case, {"bond/trapezium": {10: Failed("ArithmeticError", "no luck")}})
+    assert (ran.kind, ran.passed) == ("ran", False)
+    assert "no luck" in ran.message
+    assert (silent.kind, silent.passed) == ("silent", False)
+
+
+def test_a_case_that_judges_nothing_fails():
+    case = toy(checks=(Check("bond/trapezium", "integral", {100: 1.0}),))
+    (verdict,) = judge(case, outcomes(trapezium))
     assert not verdict.passed
-    assert "no luck" in verdict.message
+    assert "judges" in verdict.message
 
 
-def test_noise_is_judged_by_the_bound_and_not_by_its_order():
-    def rounding(n):
-        return replace(trapezium(n), quantities={"integral": 1e-15 * n})
+def zero(n):
+    return replace(trapezium(n), quantities={"integral": 0.0})
 
-    verdicts = judge(toy(), outcomes(rounding))
-    assert {v.kind for v in verdicts} == {"ran", "bound"}
-    assert all(v.passed for v in verdicts)
+
+def test_errors_too_good_to_be_true_fail():
+    """The trapezium rule is not exact for exp, and its order is two."""
+    for wrong in (zero, lambda n: replace(trapezium(n), quantities={"integral": 1e-15 * n})):
+        assert failed_kinds(toy(), wrong) == {"bound", "order"}
+        assert all("too good" in v.message for v in judge(toy(), outcomes(wrong)))
+    # Without an order only the floor of rounding is known.
+    case = toy(checks=(Check("bond/trapezium", "integral", {10: 1e-2}),))
+    assert failed_kinds(case, zero) == {"bound"}
+    assert failed_kinds(case, lambda n: trapezium(n, 1.0)) == set()
+
+
+def test_an_honest_gain_passes():
+    """Ten times better than today: the lower end follows from the method."""
+
+    def better(n):
+        measured = trapezium(n)
+        return replace(measured, quantities={"integral": 0.1 * measured.quantities["integral"]})
+
+    assert failed_kinds(toy(), better) == set()
+
+
+def test_what_is_exact_says_so():
+    case = toy(checks=(Check("bond/trapezium", "integral", {10: 1e-12}, exact=True),))
+    assert failed_kinds(case, zero) == set()
+    with pytest.raises(ValueError, match="no order"):
+        Check("m", "q", {1: 1.0}, order=OrderBand(1, 2), exact=True)
+
+
+@pytest.mark.parametrize(
+    "run",
+    [
+        zero,
+        trapezium,
+        lambda n: replace(trapezium(n), quantities={"integral": math.nan}),
+        lambda n: replace(trapezium(n), quantities={}),
+        lambda n: Failed("ArithmeticError", "no luck"),
+    ],
+)
+def test_no_outcome_makes_a_check_vanish(run):
+    said = [v for v in judge(toy(), outcomes(run, (10, 20))) if v.kind not in ("ran", "silent")]
+    assert len(said) == declared(toy(), Level.QUICK) == 3
+
+
+def spoilt(measured, where, value):
+    """A measurement with one value in one of its places replaced."""
+    if where == "field":
+        (key, item) = next(iter(measured.fields.items.items()))
+        computed = item.computed.copy()
+        computed[3] = value
+        items = {key: replace(item, computed=computed)}
+        return replace(measured, fields=replace(measured.fields, items=items))
+    if where == "curve":
+        (line,) = measured.lines
+        (curve,) = line.curves
+        reference = curve.reference.copy()
+        reference[-1] = value
+        lines = (replace(line, curves=(replace(curve, reference=reference),)),)
+        return replace(measured, lines=lines)
+    return replace(measured, **{where: {**getattr(measured, where), "another": value}})
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize("where", ["quantities", "seconds", "statistics", "field", "curve"])
+def test_what_is_not_finite_fails_wherever_it_is(where, value):
+    failed = failed_kinds(toy(), lambda n: spoilt(trapezium(n), where, value))
+    assert failed == {"ran"}
 
 
 def test_a_bound_holds_until_a_finer_one_is_listed():
@@ -133,3 +204,13 @@ def test_relative_l2():
         relative_l2([1.0, 2.0], [1.0])
     with pytest.raises(ValueError, match="no points"):
         relative_l2([], [])
+
+
+def test_the_worst_of_errors_is_not_a_number_if_one_is():
+    assert worst([0.1, 0.3]) == 0.3
+    for place in range(3):
+        errors = [0.1, 0.2, 0.3]
+        errors[place] = math.nan
+        assert math.isnan(worst(errors))
+    with pytest.raises(ValueError, match="zero-size"):
+        worst([])

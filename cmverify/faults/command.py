@@ -1,0 +1,93 @@
+"""``cmverify faults``: try every fault on the cases that can see it, and say who does."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from cmverify.faults.table import Result
+
+
+def faults(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="[FAULT]...", help="Faults or their kinds.")
+    ] = None,
+    every: Annotated[
+        bool,
+        typer.Option("--all", help="Try all cases that call the function, not the first two."),
+    ] = False,
+    remember: Annotated[
+        bool, typer.Option("--remember", help="Search afresh and keep which cases catch what.")
+    ] = False,
+    jobs: Annotated[int, typer.Option(help="Worker processes; 0 for one a core.")] = 0,
+    out: Annotated[Path, typer.Option("--out", help="Folder of the page.")] = Path("report"),
+) -> None:
+    """Put faults into solver, references and judges, and see which cases fail at level quick.
+
+    Exit code 0 only if every fault is caught by a case, or argued to be harmless.
+    """
+    from rich.console import Console
+
+    from cmverify.faults import page, registry, table
+    from cmverify.run.threads import available_cores
+
+    known = registry.all_faults()
+    wanted = set(names or ())
+    strange = wanted - {f.name for f in known} - {f.kind for f in known}
+    if strange:
+        typer.secho(
+            f"error: no fault and no kind of faults is called {', '.join(sorted(strange))}; known "
+            f"kinds: {', '.join(sorted({f.kind for f in known}))}",
+            fg=typer.colors.RED,
+            err=True,
+        )
+        raise typer.Exit(2)
+    chosen = [f for f in known if not wanted or f.name in wanted or f.kind in wanted]
+    console = Console()
+    with console.status("") as status:
+        results = table.attempt(
+            chosen,
+            {} if every or remember else table.read_map(),
+            jobs or available_cores(),
+            enough=10_000 if every else 2,
+            listen=lambda what, done, total: status.update(f"{done} of {total}: {what}"),
+        )
+    if remember:
+        table.write_map(results)
+    path = page.write(results, _command(names, every, out), out)
+    _print(console, results)
+    console.print(f"Page: {path}")
+    raise typer.Exit(0 if all(r.good for r in results) else 1)
+
+
+def _print(console, results: list[Result]) -> None:  # type: ignore[no-untyped-def]
+    from rich.markup import escape
+    from rich.table import Table
+
+    view = Table(box=None, header_style="bold", pad_edge=False)
+    for column in ("", "fault", "kind", "state", "caught by"):
+        view.add_column(column)
+    for r in results:
+        mark = "[green]✓[/]" if r.catching else "[yellow]–[/]" if r.good else "[red]✗[/]"
+        view.add_row(mark, escape(r.fault.name), r.fault.kind, r.state, escape(_who(r)))
+    console.print(view)
+    caught = sum(bool(r.catching) for r in results)
+    argued = sum(r.good and not r.catching for r in results)
+    colour = "green" if all(r.good for r in results) else "red"
+    console.print(
+        f"[bold {colour}]{caught} of {len(results)} faults are caught, {argued} more are argued "
+        f"to be harmless.[/]"
+    )
+
+
+def _who(result: Result) -> str:
+    more = len(result.cases) - 3
+    return ", ".join(result.cases[:3]) + (f" and {more} more" if more > 0 else "")
+
+
+def _command(names: list[str] | None, every: bool, out: Path) -> str:
+    parts = ["cmverify faults", *(f'"{n}"' for n in names or [])]
+    return " ".join([*parts, *(["--all"] if every else []), f"--out {out}"])

@@ -1,0 +1,162 @@
+"""The fault table: every fault tried on the methods that can see it, in worker processes."""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import os
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+
+from cmverify.faults import trial
+from cmverify.faults.fault import Fault
+from cmverify.faults.trial import Found, Pair, Sound
+from cmverify.run.threads import thread_environment
+
+#: Methods that caught a fault when it was last searched for, cheapest first.
+Map = dict[str, list[Pair]]
+MAP = "map.json"
+
+
+@dataclass(frozen=True)
+class Result:
+    """A fault and what the methods that were tried make of it."""
+
+    fault: Fault
+    found: tuple[Found, ...]
+
+    @property
+    def catching(self) -> tuple[Found, ...]:
+        """Methods that fail."""
+        return tuple(f for f in self.found if f.caught)
+
+    @property
+    def cases(self) -> tuple[str, ...]:
+        """Cases that catch it."""
+        return tuple(dict.fromkeys(f.case for f in self.catching))
+
+    @property
+    def state(self) -> str:
+        """One of "caught", "moved but passed", "called but not felt", "never called"."""
+        if self.catching:
+            return "caught"
+        if any(f.moved for f in self.found):
+            return "moved but passed"
+        return "called but not felt" if any(f.called for f in self.found) else "never called"
+
+    @property
+    def good(self) -> bool:
+        """Whether it is caught, or argued to be harmless."""
+        return bool(self.catching) or bool(self.fault.harmless)
+
+
+def attempt(
+    chosen: Sequence[Fault],
+    known: Mapping[str, Sequence[Pair]],
+    jobs: int,
+    enough: int = trial.ENOUGH,
+    listen: Callable[[str, int, int], None] = lambda what, done, total: None,
+) -> list[Result]:
+    """Try faults, first where the map says, then wherever a target is called.
+
+    Parameters
+    ----------
+    known : mapping from a fault's name to the methods to try first
+        What they do not catch, or what is not in it, is searched for everywhere.
+    jobs : int
+        Worker processes of one thread each.
+    enough : int
+        Cases that have to catch a fault before the search ends.
+    listen : callable
+        Told what is being done, and how much of it.
+    """
+    there = set(trial.pairs())
+    plans = {f.name: [p for p in known.get(f.name, ()) if p in there] for f in chosen}
+    results: dict[str, Result] = {}
+    with _workers(jobs) as pool:
+        sound = _sound(pool, sorted({p for plan in plans.values() for p in plan}), {}, listen)
+        first = [f for f in chosen if plans[f.name]]
+        for fault, found in _search(pool, first, plans, sound, enough, listen):
+            results[fault.name] = Result(fault, tuple(found))
+        missed = [f for f in chosen if f.name not in results or not results[f.name].good]
+        if missed:
+            sound = _sound(pool, sorted(there), sound, listen)
+            cheap = sorted(sound, key=lambda pair: sound[pair].seconds)
+            plans = {
+                f.name: [
+                    p
+                    for p in cheap
+                    if f.target in sound[p].called or f.target.startswith(trial.JUDGES)
+                ]
+                for f in missed
+            }
+            for fault, found in _search(pool, missed, plans, sound, enough, listen):
+                results[fault.name] = Result(fault, tuple(found))
+    return [results[f.name] for f in chosen]
+
+
+def _sound(
+    pool: ProcessPoolExecutor,
+    wanted: Sequence[Pair],
+    known: Mapping[Pair, Sound],
+    listen: Callable[[str, int, int], None],
+) -> dict[Pair, Sound]:
+    found = dict(known)
+    waiting = {pool.submit(trial.sound, p): p for p in wanted if p not in found}
+    for done, future in enumerate(as_completed(waiting), 1):
+        found[waiting[future]] = future.result()
+        listen("without a fault", done, len(waiting))
+    return found
+
+
+def _search(
+    pool: ProcessPoolExecutor,
+    faults: Sequence[Fault],
+    plans: Mapping[str, Sequence[Pair]],
+    sound: Mapping[Pair, Sound],
+    enough: int,
+    listen: Callable[[str, int, int], None],
+) -> list[tuple[Fault, list[Found]]]:
+    waiting = {
+        pool.submit(trial.search, f.name, [(p, sound[p]) for p in plans[f.name]], enough): f
+        for f in faults
+    }
+    found = []
+    for done, future in enumerate(as_completed(waiting), 1):
+        found.append((waiting[future], future.result()))
+        listen(waiting[future].name, done, len(waiting))
+    return found
+
+
+def _workers(jobs: int) -> ProcessPoolExecutor:
+    """Processes started afresh, because the limits of threads are read at import."""
+    os.environ.update(thread_environment(1))
+    return ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"))
+
+
+def read_map() -> Map:
+    """Which methods of which cases caught a fault when the map was last made."""
+    resource = files("cmverify.faults") / MAP
+    if not resource.is_file():
+        return {}
+    known = json.loads(resource.read_text(encoding="utf-8"))
+    return {fault: [(case, method) for case, method in pairs] for fault, pairs in known.items()}
+
+
+def write_map(results: Sequence[Result]) -> Path:
+    """Keep, in the sources, the methods of two cases that catch each fault."""
+    known: dict[str, list[Pair]] = read_map()
+    for result in results:
+        if seen := result.catching or tuple(f for f in result.found if f.moved):
+            known[result.fault.name] = [(f.case, f.method) for f in seen[: trial.ENOUGH]]
+    lines = [f" {_text(name)}: {_text(pairs)}" for name, pairs in sorted(known.items())]
+    path = Path(str(files("cmverify.faults") / MAP))
+    path.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
+    return path
+
+
+def _text(value: object) -> str:
+    return json.dumps(value, ensure_ascii=False)
