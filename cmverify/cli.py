@@ -10,6 +10,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 from typer.core import TyperGroup
 
+import cmverify
 from cmverify.case import Level
 from cmverify.faults.command import faults
 from cmverify.studies.speed.command import speed
@@ -22,6 +23,12 @@ class _Commands(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         from cmverify.run.lifeline import in_good_order
 
+        for name in cmverify.SIBLINGS:
+            if (other := cmverify.foreign(name)) and "doctor" not in sys.argv[1:2]:
+                _refuse(
+                    f"another package called {name} was imported first, from {other}: start "
+                    f"cmverify without it (cmverify doctor says more)"
+                )
         try:
             with in_good_order():
                 return super().invoke(ctx)
@@ -204,6 +211,7 @@ def errata(
 def doctor() -> None:
     """Say whether everything that a run needs is here. Exit code 1 if something is missing."""
     from rich.console import Console
+    from rich.markup import escape
     from rich.table import Table
 
     from cmverify.doctor import examine
@@ -213,7 +221,7 @@ def doctor() -> None:
     marks = {"ok": "[green]ok[/]", "note": "[yellow]note[/]", "problem": "[red]problem[/]"}
     for finding in examine():
         states.add(finding.state)
-        view.add_row(marks[finding.state], finding.subject, finding.detail)
+        view.add_row(marks[finding.state], escape(finding.subject), escape(finding.detail))
     Console().print(view)
     raise typer.Exit(1 if "problem" in states else 0)
 

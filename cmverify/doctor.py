@@ -6,7 +6,9 @@ import os
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
+import cmverify
 from cmverify.run import environment
 from cmverify.run.threads import VARIABLES, available_cores
 
@@ -28,10 +30,46 @@ def examine() -> Iterator[Finding]:
     for name, found in here.versions.items():
         state = "problem" if found == "not installed" else "ok"
         yield Finding(state, name, found)
+    yield from _packages()
     yield from _threads()
     yield _cache()
     yield _gmsh()
     yield _fenicsx()
+
+
+def _packages() -> Iterator[Finding]:
+    """Whose solver and references are imported, and who else has packages of these names."""
+    from importlib.machinery import PathFinder
+    from importlib.metadata import packages_distributions
+
+    home = Path(cmverify.__file__).parents[1]
+    owners = packages_distributions()
+    for name in cmverify.SIBLINGS:
+        ours = home / name
+        if other := cmverify.foreign(name):
+            detail = f"another package of that name was imported first, from {other}"
+            yield Finding("problem", name, detail)
+            continue
+        if not (ours / "__init__.py").is_file():
+            yield Finding("problem", name, f"{ours} is missing: install cmverify anew")
+            continue
+        others = sorted(set(owners.get(name, [])) - {"cmverify"})
+        if others:
+            detail = (
+                f"{', '.join(others)} installs a package {name} too, and one may have overwritten "
+                f"the other: remove it, or install cmverify into an environment of its own"
+            )
+            yield Finding("problem", name, detail)
+            continue
+        # What a script would get that does not import cmverify first: its own folder comes before.
+        spec = PathFinder.find_spec(name, [os.getcwd(), *sys.path])
+        found = list(spec.submodule_search_locations or [str(spec.origin)]) if spec else []
+        if found and Path(str(found[0])).resolve() != ours.resolve():
+            safe = "write 'from cmverify import Scene', or " if name == "solver" else ""
+            detail = f"{ours}; scripts here would import {found[0]} instead: {safe}rename that"
+            yield Finding("note", name, detail)
+        else:
+            yield Finding("ok", name, str(ours))
 
 
 def _threads() -> Iterator[Finding]:
@@ -47,8 +85,9 @@ def _cache() -> Finding:
     folder, writable = environment.numba_cache()
     if writable:
         return Finding("ok", "Numba cache", str(folder))
-    hint = "every process will compile anew; set NUMBA_CACHE_DIR to a folder you may write to"
-    return Finding("problem", "Numba cache", f"{folder} is not writable: {hint}")
+    where = f"{folder} is not writable" if folder else "no folder can be written to"
+    hint = "every process compiles for a minute; set NUMBA_CACHE_DIR to a folder you may write to"
+    return Finding("problem", "Numba cache", f"{where}: {hint}")
 
 
 def _gmsh() -> Finding:

@@ -193,13 +193,16 @@ def load(name: str, folder: Path = DATA) -> Stored:
     try:
         record = json.loads(about.read_text(encoding="utf-8"))
         _require_complete(record, name)
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, OSError, RecursionError) as error:
         raise DamagedReferenceError(
             f"{about}: not a complete record ({error}); {rebuild}"
         ) from error
     if _record_hash(record) != record["record_sha256"]:
         raise DamagedReferenceError(f"{about}: the record was altered; {rebuild}")
-    content = numbers.read_bytes()
+    try:
+        content = numbers.read_bytes()
+    except OSError as error:
+        raise DamagedReferenceError(f"{numbers}: {error.strerror}; {rebuild}") from error
     if len(content) < record["bytes"]:
         raise DamagedReferenceError(
             f"{numbers}: truncated, {len(content)} of {record['bytes']} bytes; {rebuild}"
@@ -208,8 +211,13 @@ def load(name: str, folder: Path = DATA) -> Stored:
         raise DamagedReferenceError(
             f"{numbers}: altered, its SHA-256 is not the one in {about.name}; {rebuild}"
         )
-    with np.load(io.BytesIO(content), allow_pickle=False) as archive:
-        arrays = {key: archive[key] for key in archive.files}
+    try:
+        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+            arrays = {key: archive[key] for key in archive.files}
+    except Exception as error:
+        # A record that was made of damaged numbers: zipfile, zlib and NumPy raise a dozen kinds.
+        said = " ".join(str(error).split()) or type(error).__name__
+        raise DamagedReferenceError(f"{numbers}: not an archive ({said}); {rebuild}") from error
     if set(arrays) != set(record["estimated_error"]):
         raise DamagedReferenceError(
             f"{about}: not a complete record (estimated errors of"

@@ -273,7 +273,7 @@ def tensors(_: int) -> Measurement:
     return Measurement(
         0,
         {
-            "turned energy": abs(after / before - 1.0),
+            "turned energy": float(abs(after / before - 1.0)),
             "plane stress": relative_l2([stress[0, 0], stress[0, 1], stress[2, 2]], wanted),
             "plane strain": relative_l2([plane[0, 0], plane[0, 1], plane[2, 2]], strained),
             "speeds": relative_l2([fast[0] ** 2, slow[0] ** 2], speeds),
@@ -290,7 +290,7 @@ def cracks(_: int) -> Measurement:
     from references.tables import stored_kinks
 
     isotropic = materials.isotropic(0.3)
-    hoop, _ = kinking.hoop_factors(isotropic, np.array([0.0, 0.4]), 1.0, 0.0)
+    hoop, _shear = kinking.hoop_factors(isotropic, np.array([0.0, 0.4]), 1.0, 0.0)
     # In isotropic bodies K_ww = cos³(ω/2) in mode I and the kink of mode II is at −70.53°.
     sliding = kinking.hoop_kink_angle(isotropic, 0.0, 1.0)
     own = kinking.hoop_kink_angle(TENSOR, 1.0, 0.3)

@@ -66,7 +66,7 @@ def bond_energies(solution: Solution) -> tuple[Array, Array, Array]:
         jump = (u[there] - u[here]) / length
         stretch = jump @ n
         shear = jump @ [-n[1], n[0]] - 0.5 * (theta[here] + theta[there])
-        w = 0.5 * length * (moduli.normal[o] * stretch**2 + moduli.shear[o] * shear**2)  # type: ignore[union-attr]
+        w = 0.5 * length * (moduli.normal[o] * stretch**2 + moduli.shear[o] * shear**2)  # type: ignore[attr-defined]
         pair = family.fraction[o] * family.spacing**4
         held.append(pair * w)
         rigid = solution.prescribed[here] & solution.prescribed[there]

@@ -125,8 +125,8 @@ def _named(place: Place) -> tuple[str, str]:
     if not place:
         return "", ""
     section, rest = str(place[0]), list(place[1:])
-    if rest and isinstance(rest[0], int):
-        section += f" #{int(rest.pop(0)) + 1}"
+    if rest and isinstance(number := rest[0], int):
+        section, rest = f"{section} #{number + 1}", rest[1:]
     return section, ".".join(str(part) for part in rest if not isinstance(part, int))
 
 

@@ -50,19 +50,16 @@ def describe() -> Environment:
     )
 
 
-def numba_cache() -> tuple[Path, bool]:
-    """Where Numba keeps the solver's compiled kernels, and whether it can write there."""
-    from importlib.util import find_spec
+def numba_cache() -> tuple[Path | None, bool]:
+    """Where Numba keeps the solver's compiled kernels, and whether it can write there.
 
-    chosen = os.environ.get("NUMBA_CACHE_DIR")
-    if chosen:
-        folder = Path(chosen)
-    else:
-        spec = find_spec("solver")
-        package = Path(spec.origin).parent / "operators" if spec and spec.origin else Path.cwd()
-        folder = package / "__pycache__"
-        if not _writable(folder):  # Numba then falls back to the user's cache
-            folder = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "numba"
+    No folder if Numba has found none that it can write to: kernels are then compiled in memory.
+    """
+    from solver.operators import compiled, kernels
+
+    if compiled.in_memory:
+        return None, False
+    folder = Path(str(kernels.scatter.stats.cache_path))
     return folder, _writable(folder)
 
 

@@ -220,8 +220,7 @@ def _write(path: str | os.PathLike[str], arrays: Mapping[str, Any]) -> None:
     partial = _partial(target)
     try:
         with open(partial, "wb") as file:
-            kept: dict[str, Any] = {**arrays, _DIGEST: _digest(arrays)}
-            np.savez(file, **kept)
+            np.savez(file, **{**arrays, _DIGEST: _digest(arrays)})
             file.flush()
             os.fsync(file.fileno())
         os.replace(partial, target)
