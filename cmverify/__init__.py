@@ -5,6 +5,7 @@ or another package of the name ``solver`` does not come in between. Nothing is i
 name is used.
 """
 
+# ruff: noqa: F405
 from __future__ import annotations
 
 import sys
@@ -79,7 +80,7 @@ class _Siblings:
         return spec_from_file_location(fullname, origin, submodule_search_locations=[folder])
 
 
-sys.meta_path.insert(0, _Siblings)
+sys.meta_path[:0] = [_Siblings]
 
 
 def foreign(name: str = "solver") -> str | None:

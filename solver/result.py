@@ -84,6 +84,7 @@ def replacing(target: Path) -> Iterator[Path]:
         yield partial
         os.replace(partial, target)
     finally:
+        # What cannot be removed could not be made either: the first error is the one to tell.
         with suppress(OSError):
             partial.unlink(missing_ok=True)
 

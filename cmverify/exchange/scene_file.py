@@ -11,7 +11,7 @@ import re
 import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -319,8 +319,9 @@ def _afford(
 
 def _try_on_lattice(file: SceneFile, scene: Scene, source: Source) -> None:
     """Evaluate conditions and values where they will be needed."""
-    from solver.geometry import Lattice, Outline, select
+    from solver.geometry import Lattice, select
     from solver.problem.conditions import evaluate
+    from solver.problem.discretisation import edge_loads
 
     with source.at("discretisation"):
         family = scene.family()
@@ -337,8 +338,7 @@ def _try_on_lattice(file: SceneFile, scene: Scene, source: Source) -> None:
         for name, value in table.values.items():
             with source.at("support", i, name):
                 width = 2 if name == "displacement" else 1
-                evaluate(value, lattice.points[chosen], width, "it")
-    outline = None
+                evaluate(value, lattice.places[chosen], width, "it")
     for i, (entry, load) in enumerate(zip(file.load, scene.loads, strict=True)):
         where = getattr(entry, "where", None)
         if where is not None and load.density is not None:
@@ -347,13 +347,10 @@ def _try_on_lattice(file: SceneFile, scene: Scene, source: Source) -> None:
                     raise ValueError("the load acts on no particle")
         if load.density is not None:
             with source.at("load", i, "value"):
-                load.density(lattice)
+                load.density(lattice, scene.surface == "extrapolated")
         if load.edge is not None:
-            if outline is None:
-                with source.at("crack"):
-                    outline = Outline.of(scene.region, scene.cracks, scene.spacing)
             with source.at("load", i):
-                load.edge(outline)
+                edge_loads(replace(scene, loads=[load]), lattice)
     if file.fracture is not None and file.fracture.no_fail is not None:
         with source.at("fracture", "no_fail"):
             select(lattice, file.fracture.no_fail)

@@ -55,7 +55,8 @@ def numba_cache() -> tuple[Path | None, bool]:
 
     No folder if Numba has found none that it can write to: kernels are then compiled in memory.
     """
-    from solver.operators import compiled, kernels
+    from solver import compiled
+    from solver.operators import kernels
 
     if compiled.in_memory:
         return None, False

@@ -67,7 +67,7 @@ class Discretisation:
         prescribed, values = _supports(scene, lattice, moduli)
         load = _loads(scene, lattice, moduli)
         sharp_tips = sharp_tips and scene.broken is None
-        edge_loads = _edge_loads(scene, lattice, cracks, sharp_tips)
+        on_edges = edge_loads(scene, lattice, sharp_tips)
         broken = scene.broken(lattice, family) if scene.broken else None
         # Who is held is a matter of displacement (or temperature) alone: whether its particles may
         # turn or not, a clamp is no free surface.
@@ -99,7 +99,7 @@ class Discretisation:
             prescribed[:, loose] = True
             values[:, loose] = np.nan
             broken = mechanisms.without(bonds, broken, loose)
-        nodal_load = _share_out(edge_loads, lattice, operator, load)
+        nodal_load = _share_out(on_edges, lattice, operator, load)
         if load[:, aside].any():
             raise MechanismError(
                 "a load on an edge acts on a part that nothing holds: hold it, or leave it out of "
@@ -214,20 +214,18 @@ def _moved(cracks: Sequence[Crack], lattice: Lattice) -> list[Crack]:
     ]
 
 
-def _edge_loads(
-    scene: Description, lattice: Lattice, cracks: list[Crack], sharp_tips: bool
-) -> list[Quadrature]:
-    """Loads on the body's edges, evaluated."""
+def edge_loads(scene: Description, lattice: Lattice, sharp_tips: bool = True) -> list[Quadrature]:
+    """Loads on the body's edges, evaluated, in the order of the scene's loads."""
     edges = [item.edge for item in scene.loads if item.edge is not None]
     if not edges:
         return []
     near = lattice.centred
-    outline = Outline.of(near.region, cracks, near.spacing, sharp_tips)
+    outline = Outline.of(near.region, _moved(scene.cracks, lattice), near.spacing, sharp_tips)
     return [edge(outline, near.shift) for edge in edges]
 
 
 def _share_out(
-    edge_loads: list[Quadrature], lattice: Lattice, operator: BondOperator, load: Array
+    on_edges: list[Quadrature], lattice: Lattice, operator: BondOperator, load: Array
 ) -> Array | None:
     """Give loads on edges to the surface's nodes, or to the nearest particles (into `load`).
 
@@ -237,7 +235,7 @@ def _share_out(
     nodal = None
     if surface is not None:
         nodal = np.zeros((load.shape[0], len(surface.ended.outline.nodes)))
-    for rule in edge_loads:
+    for rule in on_edges:
         force = rule.force.T / lattice.spacing**2
         ends = rule.outline.edges[rule.edge].T
         share = np.stack([1 - rule.position, rule.position])
