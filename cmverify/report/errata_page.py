@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import io
+import os
 from collections.abc import Callable, Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cmverify.errata import Judgement, coverage_line
+from cmverify.errata import TESTS, Judgement, coverage_line
 from cmverify.report.build import Picture
 from cmverify.run.results import write_text
 
@@ -67,6 +68,7 @@ def write_page(judged: Sequence[Judgement], path: Path) -> int:
         if any(number in by_number for number in numbers)
     ]
     page = environment.from_string((resources / "errata.html").read_text()).render(
+        tests=_tests_seen_from(path.resolve().parent),
         css=(resources / "style.css").read_text(),
         coverage=coverage_line(judged),
         foremost=foremost,
@@ -77,6 +79,12 @@ def write_page(judged: Sequence[Judgement], path: Path) -> int:
     )
     write_text(path, page)
     return sum(item.failed for item in judged)
+
+
+def _tests_seen_from(folder: Path) -> str:
+    """Relative path of the proofs' tests, or nothing where the package came without them."""
+    tests = Path(__file__).resolve().parents[2] / TESTS
+    return Path(os.path.relpath(tests, folder)).as_posix() if tests.is_file() else ""
 
 
 def _picture(name: str) -> Picture:

@@ -97,8 +97,8 @@ ENTRIES = [
           lambda: (1.201,), how="the last stage of Fig. 22, 1.201 mm, to the digits of the text"),
     _open("Figs. 22, 23 and 30 (stages)", "displacements at which cracks grow",
           "outline, rims and refinement of steps: results of runs"),
-    _open("Sect. 3.1.1 (data)", "E, nu, G, thickness of the first two problems",
-          "nothing: they are inputs, taken from the works cited"),
+    Entry("Sect. 3.1.1 (data)", "E, nu, G, a, thickness of the first two problems",
+          Verdict.DEFINITION, (), tuple, how="chosen by the author after the works cited"),
     _open("Figs. 25 to 27 (angles)", "kink angles", "the figures' values; the suite's kinking "
           "study holds its own against the hoop criterion"),
     _open("Sect. 3.1.2 (K)", "6.5 and 4.0 MPa m^(1/2)", "the measurements of the work cited"),
