@@ -197,14 +197,36 @@ def precision(
 
 @app.command()
 def errata(
-    every: Annotated[bool, typer.Option("--all", help="Show confirmed equations too.")] = False,
+    number: Annotated[
+        str | None, typer.Argument(metavar="[EQUATION]", help="Show one, such as 79, in full.")
+    ] = None,
+    every: Annotated[bool, typer.Option("--all", help="Show what is right too.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print everything as JSON.")] = False,
+    page: Annotated[Path | None, typer.Option(help="Write everything as an HTML page.")] = None,
 ) -> None:
-    """List the printed equations that do not hold, and prove each correction."""
+    """Judge the paper's equations and numbers, and prove each judgement."""
     from rich.console import Console
 
-    from cmverify.errata import print_errata
+    from cmverify import errata as audit
+    from references import errata as paper
 
-    raise typer.Exit(0 if print_errata(Console(), not every) else 1)
+    try:
+        chosen = [paper.entry(number)] if number is not None else paper.entries()
+    except KeyError as error:
+        _refuse(error.args[0])
+    if json:
+        judged = [audit.judge(entry) for entry in chosen]
+        typer.echo(audit.as_json(judged))
+        raise typer.Exit(1 if any(item.failed for item in judged) else 0)
+    if page is not None:
+        from cmverify.report.errata_page import write_page
+
+        failed = write_page([audit.judge(entry) for entry in chosen], page)
+        typer.echo(f"{page}")
+        raise typer.Exit(1 if failed else 0)
+    if number is not None:
+        raise typer.Exit(0 if audit.print_one(Console(), number) else 1)
+    raise typer.Exit(0 if audit.print_errata(Console(), not every) else 1)
 
 
 @app.command()

@@ -3,8 +3,8 @@
 The crack lies along the negative x axis with its tip at the origin and free faces.  Sources:
 S. G. Lekhnitskii, *Theory of Elasticity of an Anisotropic Body* (1963), for the characteristic
 equation; G. C. Sih, P. C. Paris and G. R. Irwin, *Int. J. Fract. Mech.* 1 (1965) 189-203, for the
-fields and the energy release rate.  They stand where the paper has Eqs. 79-82 and 109 (two of
-which are misprinted, see `references.errata`).
+fields and the energy release rate.  They stand where the paper has Eqs. 79-82 and 109 (Eq. 79 is
+misprinted; the frames of Eq. 109 are not said, see `references.errata`).
 
 Every textbook form carries the factor 1/(mu1 - mu2), which is 0/0 in an isotropic body.  Here the
 fields are written as divided differences h[mu1, mu2] and these are expanded by hand with
@@ -307,8 +307,10 @@ def energy_release_rate(voigt: ArrayLike, KI: float, KII: float, angle: float = 
 
         G = -KI/2 S22 Im[(KI sum + KII) / product] + KII/2 S11 Im[KII sum + KI product].
 
-    Eq. 109 of the paper has neither the division nor the right compliance for the crack across
-    the fibres.
+    The roots multiply to |product|^2 = S22/S11, so in mode I this is S11/2 Im[-KI^2 sum
+    conj(product)], the form of Eq. 109.  Its second line is that with S1111 and roots in the
+    material's axes; its first line, for a crack along axis 2, has the material's S2222 (S1111 in
+    the crack's axes) and roots in the crack's axes, which the paper does not say.
     """
     if not np.all(np.isfinite([KI, KII, angle])):
         raise ValueError("a stress intensity factor or the crack angle is not finite")

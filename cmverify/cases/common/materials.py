@@ -57,7 +57,8 @@ def bone_fracture_energies() -> tuple[float, float]:
     """Fracture energies of cortical bone across and along its fibres, J/m² (Sect. 3.1.2).
 
     From K_cl = 6.5 and K_cr = 4.0 MPa√m (Behiri and Bonfield 1989) by the generalised
-    Sih–Paris–Irwin modulus, which Eq. 109 misprints: a crack across the fibres runs along axis 2.
+    Sih–Paris–Irwin modulus (Eq. 109, whose first line wants the roots in the axes of its crack: a
+    crack across the fibres runs along axis 2).
     """
     from references.analytic.lekhnitskii import energy_release_rate
 
