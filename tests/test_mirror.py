@@ -1,0 +1,109 @@
+"""Tests mirror the source tree, and examples in docstrings are run."""
+
+import doctest
+import importlib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = ("solver", "cmverify")
+
+#: Modules whose tests have another name, and which. A new module needs a test of its own name,
+#: or one of its room's; nothing is to be added here without a reason.
+ELSEWHERE = {
+    # Aliases of types, and classes without a body.
+    "solver/arrays.py": "tests/test_architecture.py",
+    "solver/errors.py": "tests/solver/test_scene.py",
+    # A case is run, and perturbed, as a whole.
+    "cmverify/case.py": "tests/cmverify/judge/test_verdict.py",
+    "cmverify/cases/closed_forms.py": "tests/cmverify/faults/test_table.py",
+    "cmverify/cases/common/adapters.py": "tests/cmverify/cases/test_registry.py",
+    "cmverify/cases/common/bond_energies.py": "tests/cmverify/cases/test_hard.py",
+    "cmverify/cases/common/materials.py": "tests/cmverify/cases/test_hard.py",
+    "cmverify/cases/counts.py": "tests/cmverify/cases/test_registry.py",
+    "cmverify/cases/crack_tip.py": "tests/cmverify/cases/test_registry.py",
+    "cmverify/cases/disc.py": "tests/cmverify/cases/test_registry.py",
+    "cmverify/cases/first_break.py": "tests/cmverify/faults/test_table.py",
+    "cmverify/cases/patch.py": "tests/cmverify/cases/test_registry.py",
+    "cmverify/cases/recovered.py": "tests/cmverify/faults/test_table.py",
+    "cmverify/cases/solids.py": "tests/cmverify/faults/test_table.py",
+    "cmverify/cases/yardsticks.py": "tests/cmverify/faults/test_table.py",
+    # Tables and the command that prints them.
+    "cmverify/faults/changes.py": "tests/cmverify/faults/test_fault.py",
+    "cmverify/faults/command.py": "tests/cmverify/faults/test_table.py",
+    "cmverify/faults/in_judges.py": "tests/cmverify/faults/test_table.py",
+    "cmverify/faults/in_references.py": "tests/cmverify/faults/test_table.py",
+    "cmverify/faults/in_solver.py": "tests/cmverify/faults/test_table.py",
+    "cmverify/faults/page.py": "tests/cmverify/faults/test_table.py",
+    "cmverify/faults/registry.py": "tests/cmverify/faults/test_table.py",
+    "cmverify/faults/trial.py": "tests/cmverify/faults/test_table.py",
+    "cmverify/judge/norms.py": "tests/cmverify/judge/test_verdict.py",
+    "cmverify/report/figures.py": "tests/cmverify/report/test_build.py",
+    "cmverify/report/style.py": "tests/cmverify/report/test_build.py",
+    "cmverify/report/summary.py": "tests/cmverify/report/test_build.py",
+    "cmverify/report/terminal.py": "tests/cmverify/test_cli.py",
+    # Commands and what they run.
+    "cmverify/doctor.py": "tests/cmverify/test_cli.py",
+    "cmverify/errata.py": "tests/cmverify/test_cli.py",
+    "cmverify/exchange/export.py": "tests/cmverify/exchange/test_scene_file.py",
+    "cmverify/exchange/expressions.py": "tests/cmverify/exchange/test_scene_file.py",
+    "cmverify/exchange/fracture_table.py": "tests/cmverify/exchange/test_scene_file.py",
+    "cmverify/run/environment.py": "tests/cmverify/run/test_runner.py",
+    "cmverify/run/progress.py": "tests/cmverify/test_cli.py",
+    "cmverify/run/threads.py": "tests/cmverify/run/test_runner.py",
+    "cmverify/run/worker.py": "tests/cmverify/run/test_runner.py",
+}
+#: Run by asv, which `asv check` and a quick run test in CI.
+UNTESTED = ("cmverify/benchmarks/",)
+
+
+def sources(*packages: str) -> list[Path]:
+    found = [p for package in packages for p in sorted((ROOT / package).rglob("*.py"))]
+    return [p.relative_to(ROOT) for p in found if not p.stem.startswith("__")]
+
+
+def named_tests(source: Path) -> list[Path]:
+    """The test of a module's name, and those of the rooms that it lies in."""
+    names = [Path("tests") / source.parent / f"test_{source.stem}.py"]
+    for room in list(source.parents)[:-2]:
+        names.append(Path("tests") / room.parent / f"test_{room.name}.py")
+    return names
+
+
+@pytest.mark.parametrize("source", sources(*PACKAGES), ids=str)
+def test_every_module_has_a_test_of_its_name(source):
+    if source.as_posix().startswith(UNTESTED):
+        return
+    if source.as_posix() in ELSEWHERE:
+        assert (ROOT / ELSEWHERE[source.as_posix()]).is_file()
+        return
+    wanted = named_tests(source)
+    # In the solver a room's test is not enough.
+    wanted = wanted[:1] if source.parts[0] == "solver" else wanted
+    assert any((ROOT / test).is_file() for test in wanted), f"no {wanted[0]}"
+
+
+def test_nothing_is_excused_that_has_a_test_or_is_no_more():
+    for source in map(Path, ELSEWHERE):
+        assert (ROOT / source).is_file(), source
+        assert not (ROOT / named_tests(source)[0]).is_file(), source
+
+
+EXAMPLES = [
+    source
+    for source in sources("solver", "references", "cmverify")
+    if ">>> " in (ROOT / source).read_text(encoding="utf-8")
+]
+
+
+@pytest.mark.parametrize("source", EXAMPLES, ids=str)
+def test_examples_in_docstrings_give_what_they_say(source):
+    module = importlib.import_module(".".join(source.with_suffix("").parts))
+    outcome = doctest.testmod(module, optionflags=doctest.NORMALIZE_WHITESPACE)
+    assert outcome.attempted
+    assert not outcome.failed
+
+
+def test_there_are_examples():
+    assert len(EXAMPLES) >= 10
