@@ -4,6 +4,7 @@ from .edge_quadrature import Quadrature
 from .lattice import Lattice, select
 from .outline import Outline
 from .regions import Crack, Point, Region, Where, disc, polygon, rectangle
+from .spread import on_edges, on_particles
 from .strips import volumes
 
 __all__ = [
@@ -15,6 +16,8 @@ __all__ = [
     "Region",
     "Where",
     "disc",
+    "on_edges",
+    "on_particles",
     "polygon",
     "rectangle",
     "select",

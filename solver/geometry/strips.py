@@ -47,8 +47,8 @@ def volumes(lattice: Lattice, within: Region | None = None) -> Array:
         particle of a region that has no outline.
     """
     if within is not None and any(lattice.centred.shift):
-        x, y = lattice.centred.shift
-        within = within.moved((-x, -y), lattice.grid)
+        dx, dy = lattice.centred.shift
+        within = within.moved((-dx, -dy), lattice.grid)
     lattice = lattice.centred
     spacing = lattice.spacing
     try:
