@@ -32,6 +32,8 @@ class Statistics:
         Wall time of the discretisation (with the preconditioner) and of the solver.
     peak_memory : int
         Peak resident memory of the process so far, bytes.
+    warnings : tuple of str
+        What the answer leaves out or settles by a rule, one sentence each.
     """
 
     particles: int
@@ -45,6 +47,7 @@ class Statistics:
     setup_seconds: float
     solve_seconds: float
     peak_memory: int
+    warnings: tuple[str, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values, for JSON."""

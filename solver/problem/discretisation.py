@@ -16,7 +16,7 @@ from ..errors import MechanismError, SceneError
 from ..geometry import Crack, Lattice, Outline, Quadrature, on_edges, on_particles, volumes
 from ..material import Family, Moduli, Stability, calibrated, require_admissible
 from ..operators import BondOperator
-from . import mechanisms
+from . import cautions, mechanisms
 from .conditions import evaluate
 from .description import Description
 
@@ -134,6 +134,26 @@ class Discretisation:
         if self.scene.surface == "extrapolated":
             return volumes(self.lattice)
         return np.ones(self.lattice.count)
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """What the answer leaves out or settles by a rule, one sentence each."""
+        scene, lattice = self.scene, self.lattice
+        translations = ~np.array(scene.physics.turning[: len(self.prescribed)])
+        given = (self.prescribed & ~np.isnan(self.values))[translations].any(axis=0)
+        return (
+            *getattr(self.bonds, "warnings", ()),
+            *cautions.left_over(lattice, scene.surface),
+            *cautions.thin_layers(lattice, given, scene.m),
+            *cautions.thin_members(lattice, scene.m, scene.surface),
+        )
+
+    def overlaps(self, unknowns: Array) -> tuple[str, ...]:
+        """Cracks whose faces a field of shape (components, N) moves into each other."""
+        if not (self.scene.physics.breakable and self.scene.cracks):
+            return ()
+        cracks = _moved(self.scene.cracks, self.lattice)
+        return cautions.overlaps(self.bonds, cracks, unknowns[:2])
 
     @property
     def damaged(self) -> bool:
