@@ -125,14 +125,16 @@ def _ended_force(ends: _Ends, moduli: Moduli, family: Family) -> Array:
     return np.einsum("ak,aik,ak->ik", moduli.stiffness[:, ends.offset], along, ends.strains)
 
 
-def stress(solution: State, rule: Literal["plane", "family"] = "plane") -> Array:
+def stress(solution: State, rule: Literal["plane", "family"] | None = None) -> Array:
     """Stress at the particles.
 
     Parameters
     ----------
     solution : Solution, or the State of any analysis
         Of an elastic scene.
-    rule : {"plane", "family"}
+    rule : {"plane", "family"}, optional
+        By default the one that fits the treatment of surfaces: ``family`` where bonds end at them
+        (``extrapolated``), which has the whole stress on an edge, else ``plane``.
         ``plane``: Saint-Venant and Cauchy's definition (Eq. 83), force per area through the
         section Δx of the particle. Bonds between particles only: beside a surface take
         ``family``. A bond counts by half where it starts or ends on the plane
@@ -154,6 +156,8 @@ def stress(solution: State, rule: Literal["plane", "family"] = "plane") -> Array
     _need(solution, ELASTICITY, "stress")
     body = solution.discretisation
     lattice, family, moduli = body.lattice, body.family, body.moduli
+    if rule is None:
+        rule = "plane" if body.bonds.ended is None else "family"
     result = np.zeros((2, 2, lattice.count))
     if rule == "family":
         for pair in _pairs(solution):

@@ -113,6 +113,8 @@ class Equilibrium:
     def solution(self, factor: float) -> Solution:
         """The last equilibrium under `factor` times the load, for recovery."""
         operator, stability = self.operator, self.sound.stability
+        now = self.discretisation(factor)
+        found = now.field(factor * self.x)
         statistics = Statistics(
             particles=self.sound.lattice.count,
             unknowns=operator.shape[0]
@@ -127,10 +129,9 @@ class Equilibrium:
             setup_seconds=self.sound.seconds,
             solve_seconds=self.seconds,
             peak_memory=0,
-            warnings=self.sound.warnings,
+            warnings=self.sound.warnings + now.overlaps(found),
         )
-        now = self.discretisation(factor)
-        return Solution(now, now.field(factor * self.x), statistics, self.preconditioner)
+        return Solution(now, found, statistics, self.preconditioner)
 
     def surface_energy(self, others: Array | None = None) -> float:
         """Energy of the bonds that end at the surface at unit load, J per unit thickness.
@@ -257,7 +258,7 @@ class Equilibrium:
             self.worn = bool(iterations > self.pace * decades + _PATIENCE)
             self.iterations += iterations
             self.residual, self.seconds = residual, self.seconds + perf_counter() - begun
-            if not residual <= tolerance:
+            if not residual <= max(tolerance, method.attainable(operator, self.x, rhs)):
                 self.x = before
                 raise ConvergenceError(
                     f"equilibrium stopped at a relative residual of {residual:.2e} after "

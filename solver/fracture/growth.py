@@ -124,8 +124,14 @@ class Growth(Result):
 
     @property
     def damage(self) -> Array:
-        """Damage of every particle (Eq. 105), cuts by the scene's cracks included, shape (N,)."""
-        return damage(self.body.bonds)
+        """Damage of every particle (Eq. 105), cuts by the scene's cracks included, shape (N,).
+
+        Bonds within a loose fragment count as long as they are whole: only those that broke are
+        gone, not those that setting it aside took out of the equations.
+        """
+        count = self.bonds.lattice.count
+        offsets, origins = np.divmod(self.broken_bonds, count)
+        return damage(self.body.sound.bonds.breaking(offsets, origins))
 
     @property
     def midpoints(self) -> Array:

@@ -5,6 +5,7 @@ from .inside import Body
 from .lattice import Lattice, select
 from .outline import Outline
 from .regions import Crack, Point, Region, Where, disc, polygon, rectangle
+from .spread import on_edges, on_particles
 from .strips import volumes
 
 __all__ = [
@@ -17,6 +18,8 @@ __all__ = [
     "Region",
     "Where",
     "disc",
+    "on_edges",
+    "on_particles",
     "polygon",
     "rectangle",
     "select",

@@ -93,11 +93,16 @@ class Lattice:
     def origin(self) -> Point:
         """The corner of cells near the body's middle from which everything is computed, m."""
         x0, y0, x1, y1 = self.region.bounds
-        straight = _straight_sides(self.region, self.spacing)
+        straight = self.straight
         phase = (None, None) if self.phase is None else self.phase
         x = _border(x0, x1, self.spacing, straight[:2], phase[0])
         y = _border(y0, y1, self.spacing, straight[2:], phase[1])
         return x, y
+
+    @cached_property
+    def straight(self) -> tuple[bool, bool, bool, bool]:
+        """Whether the body's sides run along the grid: at its least and greatest x, then y."""
+        return _straight_sides(self.region, self.spacing)
 
     @property
     def grid(self) -> float:

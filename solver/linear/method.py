@@ -27,6 +27,8 @@ from .two_level import BlockJacobi, TwoLevel
 
 Preconditioner = Literal["auto", "two-level", "block-jacobi"]
 
+# Roundings of a row of the product that add up in its sum.
+_ROUNDINGS = 4.0
 # Below this many unknowns block Jacobi needs less time than the set-up of two levels.
 _TWO_LEVEL = 2_000
 
@@ -100,3 +102,15 @@ def relative_residual(operator: BondOperator, x: Array, rhs: Array) -> float:
     """|b − K x| / |b| with the operator itself, 0 for b = 0."""
     size = float(np.linalg.norm(rhs))
     return float(np.linalg.norm(rhs - operator.matvec(x))) / size if size else 0.0
+
+
+def attainable(operator: BondOperator, x: Array, rhs: Array) -> float:
+    """The relative residual that rounding of x leaves: some roundings of |K| |x| / |b|.
+
+    Each row sums differences of neighbours; where displacements are large beside the strains that
+    they make (a slender body in bending) these cancel.
+    """
+    size = float(np.linalg.norm(rhs))
+    largest = 2.0 * float(np.abs(operator.bulk_block).max())
+    rounding = _ROUNDINGS * np.finfo(np.float64).eps
+    return rounding * largest * float(np.linalg.norm(x)) / size if size else 0.0

@@ -185,12 +185,18 @@ AngularLaw = TwoHarmonic | UniformShear | Cosine | Fourfold
 
 
 def _material_axis(material: ElasticTensor, axis: float | None) -> float:
+    """ζ: the axis given, or the stiffer of the material's two, so that laws turn with the solid."""
     zeta = material.orthotropy_angle() if axis is None else axis
     if zeta is None:
         raise CalibrationError(
             "cosine laws have a material axis, and this elastic tensor has none (it is not "
             "orthotropic): use the two-harmonic law or the positive calibration"
         )
+    if axis is None:
+        along = material.rotated(-zeta).voigt
+        # Equal within rounding: either axis will do.
+        if along[0, 0] < along[1, 1] * (1 - 1e-12):
+            return zeta + 0.5 * np.pi
     return zeta
 
 

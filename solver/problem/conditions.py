@@ -14,6 +14,9 @@ from ..errors import SceneError
 from ..geometry import Lattice, Outline, Point, Quadrature, Region, Where, select, volumes
 from ..material.physics import Physics
 
+# Points of a line load in every cell.
+_PER_CELL = 4
+
 Value = float | ArrayLike | Callable[[Array, Array], Any]
 
 
@@ -142,11 +145,14 @@ class Load:
         on each particle over its cell, shape (selected, components)).
     edge : callable, optional
         Of a load on edges: outline, its shift from the user's coordinates → quadrature.
+    points : callable, optional
+        Of a concentrated load: spacing → (places, what acts at each, (k, components)).
     """
 
     kind: str
     density: Callable[[Lattice, bool], tuple[Mask, Array]] | None = None
     edge: Callable[[Outline, Point], Quadrature] | None = None
+    points: Callable[[float], tuple[Array, Array]] | None = None
 
     @classmethod
     def _body(cls, kind: str, value: Value, components: int, where: Where | None) -> Load:
@@ -189,6 +195,48 @@ class Load:
     def source(cls, source: Value, where: Where | None = None) -> Load:
         """Heat (or current) source ω, W/m³."""
         return cls._body("source", source, 1, where)
+
+    @classmethod
+    def point(cls, force: ArrayLike, at: Point) -> Load:
+        """A force (f1, f2), N per m of thickness, or a source of heat, W per m, at a point.
+
+        On an edge of the body (``extrapolated``) its nodes carry it, elsewhere the particles
+        around it, resultant and moment being exact (`solver.geometry.spread`). What it does at
+        the point itself grows without bound as the spacing falls: read displacements some cells
+        away.
+        """
+        given = np.asarray(force, dtype=np.float64)
+        if given.shape not in ((), (2,)) or np.shape(at) != (2,):
+            raise SceneError(
+                f"a point load is a force (f1, f2) or a source at (x, y), not {force!r}"
+            )
+        if not (np.all(np.isfinite(given)) and np.all(np.isfinite(at))):
+            raise SceneError(f"a point load that is not finite: {force!r} at {at}")
+        acting = np.atleast_2d(given.reshape(-1))
+        kind = "force" if given.ndim else "source"
+        return cls(kind, points=lambda spacing: (np.array([at], dtype=np.float64), acting))
+
+    @classmethod
+    def line(cls, density: Value, start: Point, end: Point) -> Load:
+        """A force (f1, f2) per length (Pa), or a source (W/m²), along a straight line.
+
+        In the body or on its edge; carried as point loads are. A number or a function of (x, y)
+        with one value is a source, two values are a force.
+        """
+        first, last = (np.asarray(point, dtype=np.float64) for point in (start, end))
+        length = float(np.hypot(*(last - first))) if first.shape == last.shape == (2,) else 0.0
+        if not (np.isfinite(length) and length > 0):
+            raise SceneError(f"a line load runs between two points, not {start}–{end}")
+        sample = density(*first[:, None]) if callable(density) else density
+        components = 2 if np.size(sample) == 2 else 1
+
+        def points(spacing: float) -> tuple[Array, Array]:
+            count = int(np.ceil(_PER_CELL * length / spacing))
+            share = ((np.arange(count) + 0.5) / count)[:, None]
+            places = first + share * (last - first)
+            return places, evaluate(density, places, components, "a line load") * (length / count)
+
+        return cls("force" if components == 2 else "source", points=points)
 
     @classmethod
     def traction(cls, traction: Value, start: Point, end: Point) -> Load:

@@ -13,10 +13,10 @@ from scipy.spatial import KDTree
 from ..arrays import Array, Mask
 from ..bonds import Bonds
 from ..errors import MechanismError, SceneError
-from ..geometry import Crack, Lattice, Outline, Quadrature, volumes
+from ..geometry import Crack, Lattice, Outline, Quadrature, on_edges, on_particles, volumes
 from ..material import Family, Moduli, Stability, calibrated, require_admissible
 from ..operators import BondOperator
-from . import mechanisms
+from . import cautions, mechanisms
 from .conditions import evaluate
 from .description import Description
 
@@ -71,7 +71,8 @@ class Discretisation:
         broken = scene.broken(lattice, family) if scene.broken else None
         # Who is held is a matter of displacement (or temperature) alone: whether its particles may
         # turn or not, a clamp is no free surface.
-        held = np.logical_and.reduce(prescribed[:2], axis=0)
+        turning = scene.physics.turning[: len(prescribed)]
+        held = np.logical_and.reduce(prescribed[~np.array(turning)], axis=0)
         aside = np.zeros(lattice.count, dtype=bool)
         while True:
             bonds = Bonds(lattice.centred, family, cracks, scene.surface, held, broken, sharp_tips)
@@ -100,6 +101,7 @@ class Discretisation:
             values[:, loose] = np.nan
             broken = mechanisms.without(bonds, broken, loose)
         nodal_load = _share_out(on_edges, lattice, operator, load)
+        _concentrate(scene, lattice, cracks, operator, load, nodal_load)
         if load[:, aside].any():
             raise MechanismError(
                 "a load on an edge acts on a part that nothing holds: hold it, or leave it out of "
@@ -132,6 +134,26 @@ class Discretisation:
         if self.scene.surface == "extrapolated":
             return volumes(self.lattice)
         return np.ones(self.lattice.count)
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """What the answer leaves out or settles by a rule, one sentence each."""
+        scene, lattice = self.scene, self.lattice
+        translations = ~np.array(scene.physics.turning[: len(self.prescribed)])
+        given = (self.prescribed & ~np.isnan(self.values))[translations].any(axis=0)
+        return (
+            *getattr(self.bonds, "warnings", ()),
+            *cautions.left_over(lattice, scene.surface),
+            *cautions.thin_layers(lattice, given, scene.m),
+            *cautions.thin_members(lattice, scene.m, scene.surface),
+        )
+
+    def overlaps(self, unknowns: Array) -> tuple[str, ...]:
+        """Cracks whose faces a field of shape (components, N) moves into each other."""
+        if not (self.scene.physics.breakable and self.scene.cracks):
+            return ()
+        cracks = _moved(self.scene.cracks, self.lattice)
+        return cautions.overlaps(self.bonds, cracks, unknowns[:2])
 
     @property
     def damaged(self) -> bool:
@@ -252,3 +274,36 @@ def _share_out(
         for component, values in enumerate(force):
             np.add.at(load[component], nearest, values[~felt])
     return nodal
+
+
+def _concentrate(
+    scene: Description,
+    lattice: Lattice,
+    cracks: list[Crack],
+    operator: BondOperator,
+    load: Array,
+    nodal_load: Array | None,
+) -> None:
+    """Give loads at points to the surface's nodes (into `nodal_load`) or to particles (`load`)."""
+    near, surface = lattice.centred, operator.ended_stiffness
+    for item in scene.loads:
+        if item.points is None:
+            continue
+        places, force = item.points(scene.spacing)
+        places, force = places - near.shift, force.T / scene.spacing**2
+        unknowns = scene.physics.loads[item.kind]
+        inside = np.ones(len(places), dtype=bool)
+        if surface is not None and nodal_load is not None:
+            outline = surface.ended.outline
+            edge, position = on_edges(outline, places, scene.spacing)
+            ends = outline.edges[edge]
+            at_edge = (edge >= 0) & np.isin(ends, surface.nodes).all(axis=1)
+            inside = ~at_edge
+            for node, share in zip(ends.T, (1 - position, position), strict=True):
+                for unknown, values in zip(unknowns, force, strict=True):
+                    part = (share * values)[at_edge]
+                    np.add.at(nodal_load[unknown], node[at_edge], part)
+        if inside.any():
+            point, particle, share = on_particles(near, cracks, places[inside])
+            for unknown, values in zip(unknowns, force, strict=True):
+                np.add.at(load[unknown], particle, share * values[inside][point])

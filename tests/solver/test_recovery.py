@@ -10,10 +10,12 @@ from solver import (
     Crack,
     ElasticTensor,
     Family,
+    Load,
     Scene,
     Support,
     TwoHarmonic,
     recovery,
+    rectangle,
 )
 from solver.material import assess, calibrate
 from solver.operators import BondOperator
@@ -313,3 +315,27 @@ def test_negative_micro_conductivities_conduct_right_too():
     found = imposed(scene, points @ np.array([1.0, 2.0]))
     flux = recovery.flux(found)[deep(found, 3)]
     np.testing.assert_allclose(flux, np.broadcast_to(-DISC @ [1.0, 2.0], flux.shape), atol=1e-12)
+
+
+@pytest.mark.parametrize(("surface", "rule"), [("volume", "plane"), ("extrapolated", "family")])
+def test_the_default_rule_fits_the_treatment(surface, rule):
+    # A bar in uniform tension 1: on its free edge, too, where the plane sees 0.67.
+    near = rectangle(0.06, 0.1, (-1.0, 0.0)), rectangle(0.06, 0.1, (1.0, 0.0))
+    supports = [Support.where(near[0], displacement=0.0), Support.where(near[1], u2=0.0)]
+    solid = ElasticTensor.isotropic(1.0, 0.2)
+    scene = Scene(
+        rectangle(2.0, 1.0),
+        0.05,
+        solid,
+        supports,
+        [Load.stress((1.0, 0.0, 0.0))],
+        m=3,
+        surface=surface,
+    )
+    solution = scene.solve()
+    found = recovery.stress(solution)
+    np.testing.assert_array_equal(found, recovery.stress(solution, rule))
+    np.testing.assert_array_equal(solution.fields()["stress11"], found[:, 0, 0])
+    if surface == "extrapolated":
+        middle = np.abs(solution.points[:, 0]) < 0.5
+        np.testing.assert_allclose(found[middle, 0, 0], 1.0, atol=2e-3)

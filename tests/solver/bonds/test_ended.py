@@ -243,7 +243,7 @@ def test_only_surfaces_that_free_particles_feel_have_nodes():
 STRESS = np.array([1.0, 0.3, -0.4])
 
 
-def homogeneous_error(region, n, surface, load=1.0, m=3):
+def homogeneous_error(region, n, surface, load=1.0, m=3, phase=None):
     """Relative error of the displacement of a body that its edges pull."""
     strain = np.linalg.solve(FIG_7, STRESS)
 
@@ -261,7 +261,7 @@ def homogeneous_error(region, n, surface, load=1.0, m=3):
         Support.where(near(far), u2=lambda x, y: exact_field(x, y)[..., 1]),
     ]
     loads = [Load.stress(tuple(load * STRESS))]
-    scene = Scene(region, 1 / n, SOLID, supports, loads, m=m, surface=surface)
+    scene = Scene(region, 1 / n, SOLID, supports, loads, m=m, surface=surface, phase=phase)
     solution = scene.solve(tolerance=1e-9)
     expected = exact_field(*solution.points.T)
     error = np.linalg.norm(solution.displacement - expected) / np.linalg.norm(expected)

@@ -408,6 +408,9 @@ def test_a_part_that_both_its_ligaments_leave_is_set_aside(control):
     np.testing.assert_array_equal(run.loose, (x > 4) & (x < 10))
     assert np.isnan(run.solution.displacement[run.loose]).all()
     assert np.isfinite(run.solution.displacement[~run.loose]).all()
+    # What came loose is whole in itself: only its bonds to the rest have broken (Eq. 105).
+    assert (run.damage[(x > 4 + 2) & (x < 10 - 2)] == 0).all()
+    assert (run.damage < 1).all()
     h = run.history
     assert h.stored[-1] == pytest.approx(0.0, abs=1e-6 * h.work.max())
     assert np.abs(h.imbalance).max() <= 1e-8 * h.work.max()

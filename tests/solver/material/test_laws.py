@@ -10,10 +10,12 @@ from solver import (
     ConductivityTensor,
     Cosine,
     ElasticTensor,
+    Family,
     Fourfold,
     TwoHarmonic,
     UniformShear,
 )
+from solver.material import assess, calibrate
 from tests.solver.bodies import DISC, FIG_7, conductivities, exact, rotate_4, voigts
 
 PSI = np.linspace(-3.0, 3.0, 13)
@@ -118,3 +120,20 @@ def test_laws_of_elasticity_are_refused_in_conduction():
     for law in (Fourfold(2), UniformShear()):
         with pytest.raises(CalibrationError, match="Cosine"):
             law.conductive(PSI, ConductivityTensor(DISC), extended=False)
+
+
+@pytest.mark.parametrize("n", [2, 4, 8])
+@pytest.mark.parametrize("constants", [(3.0, 1.0, 0.4, 0.2), (1.0, 3.0, 0.1, 0.3)])
+def test_a_cosine_law_turns_with_the_solid(n, constants):
+    c11, c22, c12, c66 = constants
+    solid = ElasticTensor(np.array([[c11, c12, 0.0], [c12, c22, 0.0], [0.0, 0.0, c66]]))
+    family, law = Family(3, 1.0), Cosine(n)
+    before, after = (
+        calibrate(family, material, law=law) for material in (solid, solid.rotated(np.pi / 2))
+    )
+    index = {tuple(offset): o for o, offset in enumerate(family.offsets)}
+    turned = [index[(-j, i)] for i, j in family.offsets]
+    scale = np.abs(before.normal).max()
+    np.testing.assert_allclose(after.normal[turned], before.normal, atol=1e-9 * scale)
+    np.testing.assert_allclose(after.shear[turned], before.shear, atol=1e-9 * scale)
+    assert assess(family, after).kind == assess(family, before).kind

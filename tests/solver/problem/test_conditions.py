@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from solver import (
     ConductivityTensor,
+    Crack,
     ElasticTensor,
     Load,
     Scene,
@@ -381,3 +382,137 @@ def test_who_is_held_is_decided_by_displacement_alone(surface):
         )
         tips.append(scene.solve().displacement[:, 1].max())
     assert tips[1] == pytest.approx(tips[0], rel=1e-7)
+
+
+# ---- points and lines ---------------------------------------------------------------------------
+
+
+@exact
+@given(st.floats(-0.49, 0.49), st.floats(-0.49, 0.49), treatments)
+def test_a_point_load_has_its_resultant_and_its_moment(x, y, surface):
+    parts = plate(LEFT, loads=[Load.point((2.0, -1.0), (x, y))], surface=surface)
+    assert resultant(parts, 0) == pytest.approx(2.0, rel=1e-12)
+    assert resultant(parts, 1) == pytest.approx(-1.0, rel=1e-12)
+    if parts.nodal_load is None or not parts.nodal_load.any():
+        carried = parts.load[0] @ parts.lattice.points * parts.family.cell_area
+        np.testing.assert_allclose(carried, [2 * x, 2 * y], atol=1e-9)
+    acting = parts.lattice.points[parts.load[0] != 0]
+    assert np.hypot(*(acting - (x, y)).T).max(initial=0.0) < 0.3 + 1e-9
+
+
+def test_a_point_load_at_a_particle_and_between_four():
+    parts = plate(LEFT, loads=[Load.point((1.0, 0.0), (0.15, 0.25))])
+    share = parts.load[0] * parts.family.cell_area
+    assert share.max() == pytest.approx(1.0, abs=1e-9)
+    parts = plate(LEFT, loads=[Load.point((1.0, 0.0), (0.1, 0.2))])
+    share = np.sort(parts.load[0] * parts.family.cell_area)
+    np.testing.assert_allclose(share[-4:], 0.25, atol=0.02)
+
+
+def test_a_point_on_the_edge_loads_the_surface():
+    load = Load.point((3.0, 0.0), (0.5, 0.03))
+    parts = plate(LEFT, loads=[load], surface="extrapolated")
+    assert not parts.load.any()
+    nodes = parts.bonds.ended.outline.nodes + parts.bonds.lattice.shift
+    carried = parts.nodal_load[0] @ nodes * parts.family.cell_area
+    np.testing.assert_allclose(carried, [1.5, 0.09], atol=1e-12)
+
+
+@pytest.mark.parametrize("surface", ["none", "volume", "extrapolated"])
+def test_a_point_load_stays_on_its_side_of_a_crack(surface):
+    crack = Crack((-0.1, 0.02), (0.6, 0.02))
+    parts = plate(
+        LEFT, loads=[Load.point((0.0, 1.0), (0.3, 0.05))], cracks=[crack], surface=surface
+    )
+    assert parts.lattice.points[parts.load[1] != 0, 1].min() > 0.02
+
+
+def test_a_line_source_makes_a_kink():
+    # A bar held on the left: T rises by q/k a length up to the line, and no further.
+    scene = Scene(
+        rectangle(2.0, 0.5),
+        0.05,
+        CONDUCTOR,
+        [Support.where(rectangle(0.3, 1.0, (-1.0, 0.0)), temperature=lambda x, y: x + 0.85)],
+        [Load.line(1.0, (0.31, -0.25), (0.31, 0.25))],
+        m=3,
+        surface="extrapolated",
+    )
+    solution = scene.solve()
+    x = solution.points[:, 0]
+    far = np.abs(x - 0.31) > 0.2
+    true = np.minimum(x, 0.31) + 0.85
+    np.testing.assert_allclose(solution.temperature[far], true[far], atol=1e-3)
+
+
+@pytest.mark.parametrize("surface", ["none", "extrapolated"])
+def test_a_line_along_an_edge_is_a_traction(surface):
+    # Without nodes a traction acts on the row beside the edge: its moment is half a cell off.
+    pull = (1.0, 0.4 if surface == "extrapolated" else 0.0)
+    kinds = Load.line(pull, (0.5, -0.5), (0.5, 0.5)), Load.traction(pull, (0.5, -0.5), (0.5, 0.5))
+    one, other = (
+        Scene(SQUARE, 0.1, SOLID, [LEFT], [load], m=2, surface=surface).solve().displacement
+        for load in kinds
+    )
+    far = np.arange(100) % 10 < 7
+    np.testing.assert_allclose(one[far], other[far], atol=0.02 * np.abs(other).max())
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Load.point((1.0, 2.0, 3.0), (0, 0)), "a point load is a force"),
+        (lambda: Load.point((1.0, 2.0), (0, 0, 0)), "a point load is a force"),
+        (lambda: Load.point((1.0, np.nan), (0, 0)), "not finite"),
+        (lambda: Load.line(1.0, (0, 0), (0, 0)), "between two points"),
+        (lambda: plate(HELD, loads=[Load.point((1.0, 0.0), (0.9, 0.0))]), "no particle sees it"),
+        (lambda: plate(HELD, loads=[Load.point(1.0, (0.0, 0.0))]), "does not act on an elastic"),
+    ],
+)
+def test_concentrated_loads_that_make_no_sense(make, message):
+    with pytest.raises(SceneError, match=message):
+        make()
+
+
+# ---- parts of edges -----------------------------------------------------------------------------
+
+
+@exact
+@given(
+    st.sampled_from([(0.5, 0.0), (-0.5, 0.0), (0.0, 0.5), (0.0, -0.5)]),
+    st.floats(0.05, 0.9),
+    st.floats(-0.04, 0.04),
+    treatments,
+)
+def test_a_region_takes_its_part_of_an_edge_on_every_side(side, size, shift, surface):
+    x, y = side
+    # As wide as the edge is long, or with its rim on the edge itself.
+    for depth in (0.3, 0.6):
+        centre = (x + shift * (x == 0) + np.sign(x) * (depth - 0.3) / 2, y + shift * (y == 0))
+        centre = (centre[0], centre[1] + np.sign(y) * (depth - 0.3) / 2)
+        part = rectangle(*((depth, size) if x else (size, depth)), centre)
+        load = Load.stress((1.0, 1.0, 0.0), where=part)
+        parts = plate(LEFT, loads=[load], surface=surface)
+        assert resultant(parts, 0) == pytest.approx(np.sign(x) * size, abs=1e-9)
+        assert resultant(parts, 1) == pytest.approx(np.sign(y) * size, abs=1e-9)
+
+
+@exact
+@given(st.floats(0.1, 0.4), st.floats(0, 6.2), st.sampled_from(["none", "extrapolated"]))
+def test_a_disc_and_a_function_cut_edges_where_they_end(radius, angle, surface):
+    body = rectangle(1.0, 1.0, angle=angle)
+    c, s = np.cos(angle), np.sin(angle)
+    where = disc(radius, (0.5 * c + 0.1 * c, 0.5 * s + 0.1 * s))
+    half = np.sqrt(max(radius**2 - 0.01, 0.0))
+
+    def also(x, y):
+        return np.hypot(x - 0.6 * c, y - 0.6 * s) <= radius
+
+    held = [Support.where(disc(0.3), displacement=0.0)]
+    for part in (where, also):
+        if half < 0.01:
+            continue
+        load = Load.stress((1.0, 1.0, 0.0), where=part)
+        parts = Scene(body, 0.1, SOLID, held, [load], m=2, surface=surface).discretise()
+        assert resultant(parts, 0) == pytest.approx(2 * half * c, abs=1e-8)
+        assert resultant(parts, 1) == pytest.approx(2 * half * s, abs=1e-8)

@@ -1,0 +1,191 @@
+"""What a scene asks that the model answers less well than it seems: sentences for its result.
+
+Nothing here changes a solution. Each sentence says what is meant, where, and by how much.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+from scipy import ndimage
+
+from ..arrays import Array, Mask
+from ..bonds import Bonds, Surface
+from ..errors import SceneError
+from ..geometry import Crack, Lattice
+
+# Part of a cell that is left over and nobody sees.
+_WHOLE = 1e-3
+# Share of a body's area by which its cells may differ from it.
+_AREA = 0.01
+# Share of the largest opening or slip of a crack below which an overlap is an error of the lattice,
+# and of the strain between neighbours.
+_OVERLAP, _STRAINED = 0.02, 0.05
+# What thin members come to (m = 5, two cells thick, measured in bending).
+_THIN: dict[str, str] = {"extrapolated": "-17 %", "volume": "+25 %", "none": "+156 %"}
+
+
+def left_over(lattice: Lattice, surface: Surface) -> tuple[str, ...]:
+    """Says so if the body is not a whole number of cells."""
+    spacing = lattice.spacing
+    x0, y0, x1, y1 = lattice.region.bounds
+    across = np.array([x1 - x0, y1 - y0]) / spacing
+    straight = lattice.straight
+    odd = [
+        bool(all(straight[2 * k : 2 * k + 2]) and abs(across[k] - np.rint(across[k])) > _WHOLE)
+        for k in (0, 1)
+    ]
+    try:
+        area = lattice.region.outline(spacing / 16).area / spacing**2
+    except SceneError:
+        return ()
+    off = lattice.count / area - 1.0
+    drawn = f"{across[0]:.5g} × {across[1]:.5g} cells"
+    if surface == "extrapolated":
+        if not any(odd):
+            return ()
+        return (
+            f"the body is {drawn}, not a whole number of them: its particles stand for "
+            f"{off:+.2%} of its area; bonds end, and loads act, where its edges are",
+        )
+    if not any(odd) and abs(off) <= _AREA:
+        return ()
+    return (
+        f"the body is {drawn}, and is solved as whole ones, {off:+.2%} of its area: "
+        f"surface={surface!r} lets it end with its outermost cells",
+    )
+
+
+def thin_layers(lattice: Lattice, prescribed: Mask, m: float) -> tuple[str, ...]:
+    """Says so if prescribed particles lie less than a horizon deep.
+
+    Parameters
+    ----------
+    prescribed : ndarray of bool, shape (N,)
+        Particles of which something is prescribed that the horizon has to reach through.
+    """
+    if not prescribed.any() or prescribed.all():
+        return ()
+    grid, free = np.zeros((2, *lattice.shape), dtype=bool)
+    grid[lattice.mask], free[lattice.mask] = prescribed, ~prescribed
+    deep = ndimage.distance_transform_edt(~free)
+    labels, count = ndimage.label(grid, structure=np.ones((3, 3)))
+    depth = ndimage.maximum(deep, labels, np.arange(1, count + 1))
+    thin = np.nonzero(depth < np.floor(m) - 1e-9)[0]
+    if not len(thin):
+        return ()
+    worst = thin[np.argmin(depth[thin])]
+    x, y = _middle(lattice, labels == worst + 1)
+    more = f" (and in {len(thin) - 1} other places)" if len(thin) > 1 else ""
+    return (
+        f"what is prescribed about ({x:.4g}, {y:.4g}){more} lies {depth[worst]:.2g} cell(s) deep, "
+        f"less than the horizon of {m:g}: bonds of free particles reach past it, and it holds "
+        f"them less firmly than a boundary",
+    )
+
+
+def thin_members(lattice: Lattice, m: float, surface: Surface) -> tuple[str, ...]:
+    """Says so if parts of the body are thinner than two horizons."""
+    mask = lattice.mask
+    inside = ndimage.distance_transform_edt(mask)
+    core = inside >= m - 1e-9
+    # A corner of 60° is two horizons away from what a disc of one horizon fills.
+    thin = mask.copy()
+    if core.any():
+        thin &= ndimage.distance_transform_edt(~core) > 2.0 * m
+    if not thin.any():
+        return ()
+    labels, count = ndimage.label(thin, structure=np.ones((3, 3)))
+    across = np.minimum(_runs(mask), _runs(mask.T).T)
+    thickness = ndimage.median(across, labels, np.arange(1, count + 1))
+    worst = int(np.argmin(thickness))
+    x, y = _middle(lattice, labels == worst + 1)
+    return (
+        f"a member about ({x:.4g}, {y:.4g}) is {thickness[worst]:.3g} cells thick, less than two "
+        f"horizons ({2 * m:g}): its stiffness is off (two cells thick by {_THIN[surface]} in "
+        f"bending with surface={surface!r}); take a smaller spacing or horizon",
+    )
+
+
+def overlaps(bonds: Bonds, cracks: Sequence[Crack], displacement: Array) -> tuple[str, ...]:
+    """Says so if the faces of a crack have moved into each other.
+
+    What the faces have moved apart is the difference between the nearest particles on both sides,
+    less what the solid between them is strained by, as that on either side.
+
+    Parameters
+    ----------
+    cracks : sequence of Crack
+        In the coordinates of the bonds' lattice.
+    displacement : ndarray, shape (2, N), m
+    """
+    lattice = bonds.lattice
+    if not len(bonds.special) or not cracks:
+        return ()
+    number, points = lattice.number(), lattice.points
+    rows, columns = lattice.rows_columns
+    ends = np.concatenate([np.array(crack.segments) for crack in cracks])
+    owner = np.repeat(np.arange(len(cracks)), [len(crack.segments) for crack in cracks])
+    tree = shapely.STRtree(shapely.linestrings(ends))
+    u = np.nan_to_num(displacement)
+    closed, where, whose, size, strained = [], [], [], 0.0, 0.0
+    half = bonds.family.size // 2
+    for o, (dx, dy) in enumerate(bonds.family.offsets[:half]):
+        if abs(dx) + abs(dy) != 1:
+            continue
+        p = bonds.special[bonds.strengths[o] == 0]
+        q = number[rows[p] + dy, columns[p] + dx]
+        p, q = p[q >= 0], q[q >= 0]
+        lines = shapely.linestrings(np.stack([points[p], points[q]], axis=1))
+        pair, piece = tree.query(lines, predicate="intersects")
+        p, q = p[pair], q[pair]
+        # The solid on either side, one particle further.
+        before, after = (
+            number[rows[r] + sign * dy, columns[r] + sign * dx] for r, sign in ((p, -1), (q, 1))
+        )
+        strain = 0.5 * np.where(before >= 0, u[:, p] - u[:, before], 0.0)
+        strain = strain + 0.5 * np.where(after >= 0, u[:, after] - u[:, q], 0.0)
+        apart = u[:, q] - u[:, p] - strain
+        along = ends[piece, 1] - ends[piece, 0]
+        normal = np.array([-along[:, 1], along[:, 0]]) / np.hypot(*along.T)
+        normal *= np.sign(normal[0] * dx + normal[1] * dy)
+        closed.append(-(normal * apart).sum(axis=0))
+        where.append(0.5 * (points[p] + points[q]))
+        whose.append(owner[piece])
+        size = max(size, float(np.abs(apart).max(initial=0.0)))
+        strained = max(strained, float(np.abs(strain).max(initial=0.0)))
+    if not closed:
+        return ()
+    overlap, place, crack = (np.concatenate(part) for part in (closed, where, whose))
+    bad = overlap > max(_OVERLAP * size, _STRAINED * strained)
+    said = []
+    for k in np.unique(crack[bad]):
+        mine = bad & (crack == k)
+        worst = np.nonzero(mine)[0][np.argmax(overlap[mine])]
+        x, y = place[worst] + lattice.shift
+        said.append(
+            f"the faces of the crack through {cracks[k].drawn} overlap by up to "
+            f"{overlap[worst]:.3g} m ({overlap[worst] / lattice.spacing:.2g} cells) at "
+            f"({x:.4g}, {y:.4g}), on {mine.sum() / (crack == k).sum():.0%} of it: faces do not "
+            f"touch in this model, a crack that closes would carry pressure"
+        )
+    return tuple(said)
+
+
+def _runs(mask: Mask) -> Array:
+    """How many cells lie in a row with each, along the second axis; 0 for empty ones."""
+    flat = np.pad(mask, ((0, 0), (0, 1))).ravel()
+    edges = np.diff(np.concatenate([[False], flat, [False]]).astype(np.int8))
+    start, stop = np.nonzero(edges == 1)[0], np.nonzero(edges == -1)[0]
+    found = np.zeros(len(flat))
+    found[flat] = np.repeat(stop - start, stop - start)
+    return found.reshape(mask.shape[0], -1)[:, :-1]
+
+
+def _middle(lattice: Lattice, cells: Mask) -> Array:
+    """Mean position of some cells in the user's coordinates."""
+    x, y = lattice.axes
+    rows, columns = np.nonzero(cells)
+    return np.array([x[columns].mean(), y[rows].mean()]) + lattice.shift

@@ -1,0 +1,90 @@
+"""Cautions: what a scene asks beyond what the model answers well is said in its result."""
+
+import numpy as np
+import pytest
+
+from solver import ConductivityTensor, Crack, ElasticTensor, Load, Scene, Support, disc, rectangle
+
+SOLID = ElasticTensor.isotropic(1.0, 0.2)
+TOP, HELD = rectangle(2.0, 0.1, (0.0, 0.5)), Support.where(lambda x, y: y < -0.25, displacement=0.0)
+PULL, PUSH = (Load.stress((0.0, sign, 0.0), where=TOP) for sign in (1.0, -1.0))
+
+
+def warnings(region=None, supports=(HELD,), loads=(PULL,), **options):
+    region = rectangle(1.0, 1.0) if region is None else region
+    options = {"m": 3, **options}
+    scene = Scene(region, 0.05, SOLID, supports, loads, **options)
+    return scene.solve().statistics.warnings
+
+
+@pytest.mark.parametrize("surface", ["none", "volume", "extrapolated"])
+@pytest.mark.parametrize("region", [rectangle(1.0, 1.0), rectangle(1.05, 0.95, (0.31, 0.012))])
+def test_a_sound_scene_is_answered_without_a_word(surface, region):
+    assert warnings(region, surface=surface) == ()
+    # A corner is no thin member, and a crack that opens does not overlap.
+    assert warnings(cracks=[Crack((-0.2, 0.02), (0.23, 0.02))], surface=surface) == ()
+    assert warnings(cracks=[Crack((-0.2, -0.2), (0.2, 0.2))], surface=surface) == ()
+    assert warnings(cracks=[Crack((0.02, -0.2), (0.02, 0.2))], surface=surface) == ()
+    held = Support.where(disc(0.2), displacement=0.0)
+    assert warnings(disc(0.5), [held], [], surface=surface) == ()
+
+
+@pytest.mark.parametrize(
+    ("surface", "said"),
+    [("volume", "solved as whole ones, -1.96%"), ("extrapolated", "stand for -1.96% of its area")],
+)
+def test_what_is_no_whole_number_of_cells(surface, said):
+    (found,) = warnings(rectangle(1.02, 1.0), surface=surface)
+    assert "20.4 × 20 cells" in found
+    assert said in found
+
+
+def test_a_layer_thinner_than_a_horizon():
+    for deep, count in ((1, 1), (2, 1), (3, 0)):
+        held = Support.where(lambda x, y, d=deep: y < -0.5 + 0.05 * d, displacement=0.0)
+        found = warnings(supports=[held])
+        assert len(found) == count
+        if found:
+            assert f"{deep} cell(s) deep, less than the horizon of 3" in found[0]
+            assert "about (" in found[0]
+
+
+def test_a_member_thinner_than_two_horizons():
+    def clamp(cells):
+        # A C: jaws of 6 cells, and a back of some over a length of 18.
+        return rectangle(1.0, 1.5) - rectangle(1.0, 0.9, (0.05 * cells, 0.0))
+
+    held = Support.where(lambda x, y: y < -0.45, displacement=0.0)
+    pull = Load.body_force((0.0, 1.0), where=lambda x, y: y > 0.6)
+    (found,) = warnings(clamp(4), [held], [pull])
+    assert "4 cells thick, less than two horizons (6)" in found
+    assert "about (-0.40" in found
+    assert "+25 %" in found
+    assert warnings(clamp(6), [held], [pull]) == ()
+
+
+@pytest.mark.parametrize("surface", ["none", "volume", "extrapolated"])
+@pytest.mark.parametrize("end", [(0.23, 0.02), (0.2, 0.19)])
+def test_faces_that_overlap_say_by_how_much(surface, end):
+    crack = Crack((-0.2, 0.02), end)
+    (found,) = warnings(loads=[PUSH], cracks=[crack], surface=surface)
+    assert f"through {crack.points} overlap by up to" in found
+    assert "on 100% of it" in found
+    # By what the same crack opens under the same load pulled: the model is linear.
+    amount = float(found.split("up to ")[1].split(" m")[0])
+    solved = Scene(
+        rectangle(1.0, 1.0), 0.05, SOLID, [HELD], [PULL], m=3, cracks=[crack], surface=surface
+    ).solve()
+    x, y = solved.points.T
+    jump = np.ptp(solved.displacement[(np.abs(x) < 0.1) & (np.abs(y - 0.02) < 0.1), 1])
+    assert 0.6 * jump < amount < jump
+
+
+def test_conduction_has_no_faces_to_overlap():
+    held = Support.where(lambda x, y: y < -0.25, temperature=0.0)
+    crack = Crack((-0.2, 0.02), (0.23, 0.02))
+    load = Load.flux((0.0, -1.0), where=TOP)
+    conductor = ConductivityTensor.isotropic(1.0)
+    scene = Scene(rectangle(1.0, 1.0), 0.05, conductor, [held], [load], m=3, cracks=[crack])
+    assert scene.solve().statistics.warnings == ()
+    assert scene.solve().statistics.as_dict()["warnings"] == ()
