@@ -142,7 +142,7 @@ class Discretisation:
         translations = ~np.array(scene.physics.turning[: len(self.prescribed)])
         given = (self.prescribed & ~np.isnan(self.values))[translations].any(axis=0)
         return (
-            *getattr(self.bonds, "warnings", ()),
+            *self.bonds.warnings,
             *cautions.left_over(lattice, scene.surface),
             *cautions.thin_layers(lattice, given, scene.m),
             *cautions.thin_members(lattice, scene.m, scene.surface),
@@ -159,11 +159,6 @@ class Discretisation:
     def damaged(self) -> bool:
         """Whether single bonds are broken (cracks that were always there do not count)."""
         return self.scene.broken is not None
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What the answer leaves out or settles by a rule, one sentence each."""
-        return self.bonds.warnings
 
     def right_hand_side(self) -> Array:
         """Load of the active unknowns less what the prescribed ones exert, flattened."""
