@@ -99,6 +99,8 @@ def trace(starts: Array, marks: Array, spacing: float) -> list[CrackPath]:
     # A mark on the very start: csgraph takes a zero for no link.
     lengths = np.maximum(lengths, 1e-12 * spacing)
     graph = sparse.coo_array((lengths, (i, j)), shape=(len(nodes), len(nodes))).tocsr()
+    # SciPy before 1.15 takes indices of 32 bits only.
+    graph.indices, graph.indptr = graph.indices.astype("i4"), graph.indptr.astype("i4")
     distance, before, source = dijkstra(
         graph, directed=False, indices=np.arange(count), min_only=True, return_predecessors=True
     )
