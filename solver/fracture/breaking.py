@@ -23,6 +23,7 @@ from ..material.strains import elongations
 from ..operators import segments
 from ..problem import Discretisation
 from . import bond_kernels
+from .broken import BrokenBonds
 
 Criterion = Literal["total", "axial"]
 
@@ -144,11 +145,12 @@ class Breakable:
         self._number = lattice.number()
         #: Factor of every bond as it was at the start, 0 where there is none, (half, N).
         self.whole: Array = np.stack([discretisation.bonds.strength(o) for o in range(half)])
-        #: The same now.
-        self.strengths: Array = self.whole.copy()
+        #: The record of those that have broken.
+        self.broken = BrokenBonds()
+        self._strengths, self._followed = self.whole.copy(), 0
         #: Bonds that must not break, (half, N), or None.
         self.kept: Mask = self._kept(discretisation, no_fail)
-        self._out = np.empty_like(self.strengths)
+        self._out = np.empty_like(self.whole)
         self._grids = np.zeros((2, 3, int(np.prod(lattice.shape))))
 
     def _kept(self, discretisation: Discretisation, no_fail: tuple[Where, ...]) -> Mask:
@@ -157,12 +159,20 @@ class Breakable:
             zone |= select(self.lattice, where)
         held: Mask = np.logical_and.reduce(discretisation.prescribed, axis=0)
         rows, columns = self.lattice.rows_columns
-        kept = np.zeros(self.strengths.shape, dtype=bool)
+        kept = np.zeros(self.whole.shape, dtype=bool)
         for o, (dx, dy) in enumerate(self.family.offsets[: len(kept)]):
             there = self._number[rows + dy, columns + dx]
             # Between prescribed particles nothing can be relieved: the support is rigid.
             kept[o] = zone | zone[there] | (held & held[there])
         return kept
+
+    @property
+    def strengths(self) -> Array:
+        """Factor of every bond as the record of broken bonds leaves it, shape (half, N)."""
+        if self._followed != len(self.broken):
+            self._strengths.ravel()[self.broken.between(self._followed)] = 0.0
+            self._followed = len(self.broken)
+        return self._strengths
 
     # ---- energies -----------------------------------------------------------------------
 
@@ -255,10 +265,6 @@ class Breakable:
             starts = np.union1d(particles, back[back >= 0])
             found.append(o * count + starts[self.strengths[o, starts] != 0])
         return np.concatenate(found)
-
-    def remove(self, bonds: Indices) -> None:
-        """Bonds that carry nothing from now on."""
-        self.strengths.ravel()[bonds] = 0.0
 
 
 def next_batch(utilisation: Array, least: float, size: int) -> tuple[Indices, Array]:

@@ -104,7 +104,7 @@ def save(run: Growth, path: str | os.PathLike[str], mark: str) -> None:
         "target": run.target,
         "resting": run.resting,
         "reason": run.reason,
-        "breaks": np.array(run.log, dtype=np.float64).reshape(-1, 4),
+        "breaks": run.bonds.broken.records,
         "steps": np.array(run.solves, dtype=np.int64).reshape(-1, 3),
         "history": run.history.array,
         "ledger": [ledger.work, ledger.dissipated, ledger.excess, ledger.deflection],
@@ -147,30 +147,20 @@ def _restore(run: Growth, found: Mapping[str, Any]) -> None:
     body, bonds, ledger = run.body, run.bonds, run.ledger
     run.load_factor, run.target = float(found["factor"]), int(found["target"])
     run.resting, run.reason = bool(found["resting"]), str(found["reason"])
-    run.log += [(int(b), int(s), float(f), bool(d)) for b, s, f, d in found["breaks"]]
+    bonds.broken.add(*(found["breaks"][name] for name in found["breaks"].dtype.names))
     run.solves += [(int(a), int(b), bool(c)) for a, b, c in found["steps"]]
     run.history.rows += found["history"].tolist()
     ledger.work, ledger.dissipated, ledger.excess, ledger.deflection = found["ledger"].tolist()
-    body.aside = found["aside"]
-    if body.aside.any():
-        body.bonds = body.bonds.without_ends(np.nonzero(body.aside)[0])
-    gone = np.array([entry[0] for entry in run.log], dtype=np.int64)
     iterations, worn, built, precise = found["counters"].tolist()
     body.iterations, body.worn, run.precise = iterations, bool(worn), bool(precise)
     body.residual, body.seconds, body.pace = found["residual"].tolist()
+    before = body.resume(found["aside"], built)
     if "coarse_data" in found:
         # The preconditioner belongs to the bonds there were when it was built.
-        body.break_bonds(*bonds.ends(gone[:built]))
-        operator: BondOperator = method.positive(body.operator, body.kind)
+        operator: BondOperator = method.positive(before, body.kind)
         parts = (found["coarse_data"], found["coarse_indices"], found["coarse_indptr"])
         coarse = sparse.csc_array(parts, shape=(len(parts[2]) - 1,) * 2)
         body.preconditioner = TwoLevel(operator, int(found["coarse_cells"]), coarse=coarse)
-        body.built = built
-        gone_later = gone[built:]
-    else:
-        gone_later = gone
-    body.break_bonds(*bonds.ends(gone_later))
-    bonds.remove(gone)
     body.x = found["x"]
     body.rhs = found["rhs"] if len(found["rhs"]) else None
 

@@ -22,6 +22,7 @@ from ..operators import BondOperator
 from ..problem import Discretisation, mechanisms
 from ..problem.rigid import unheld
 from ..solution import Solution, Statistics
+from .breaking import Breakable
 
 # Iterations above those that a fresh preconditioner would have taken after which it is brought up
 # to date.
@@ -54,14 +55,14 @@ class Equilibrium:
     Parameters
     ----------
     discretisation : Discretisation
+    breakable : Breakable
+        Its record of broken bonds is what `bonds` and `operator` follow.
     tolerance : float
         Relative residual of every solve.
     max_iterations : int
 
     Attributes
     ----------
-    bonds, operator
-        As they are now.
     unknowns : ndarray, shape (components, N)
         u1, u2 and θ Δx at unit load; NaN at particles set aside.
     aside : ndarray of bool, shape (N,)
@@ -69,11 +70,17 @@ class Equilibrium:
     """
 
     def __init__(
-        self, discretisation: Discretisation, tolerance: float, max_iterations: int
+        self,
+        discretisation: Discretisation,
+        breakable: Breakable,
+        tolerance: float,
+        max_iterations: int,
     ) -> None:
-        self.sound = discretisation
-        self.bonds: Bonds = discretisation.bonds
-        self.operator: BondOperator = discretisation.operator
+        self.sound, self.breakable = discretisation, breakable
+        self._bonds: Bonds = discretisation.bonds
+        self._operator: BondOperator = discretisation.operator
+        # How many of the broken bonds these two know.
+        self._followed = 0
         self.tolerance, self.max_iterations = tolerance, max_iterations
         self.kind = discretisation.stability.kind
         self.aside = np.zeros(discretisation.lattice.count, dtype=bool)
@@ -84,7 +91,19 @@ class Equilibrium:
         self.iterations, self.residual, self.seconds = 0, 0.0, 0.0
         # For the preconditioner: iterations a decade of the residual when it was fresh, whether it
         # is due, and how many bonds were gone when it was made.
-        self.pace, self.worn, self.built, self.gone = 0.0, False, 0, 0
+        self.pace, self.worn, self.built = 0.0, False, 0
+
+    @property
+    def bonds(self) -> Bonds:
+        """Bonds as the record of broken ones leaves them."""
+        self.follow()
+        return self._bonds
+
+    @property
+    def operator(self) -> BondOperator:
+        """Stiffness of these bonds."""
+        self.follow()
+        return self._operator
 
     @property
     def prescribed(self) -> Mask:
@@ -158,15 +177,34 @@ class Equilibrium:
 
     # ---- changes ------------------------------------------------------------------------
 
-    def break_bonds(self, offsets: Indices, origins: Indices, ends: Indices) -> None:
-        """Break bonds, given by half offset and both ends; then `solve` for the equilibrium."""
-        self.bonds = self.bonds.breaking(offsets, origins)
-        self.gone += len(offsets)
+    def follow(self, last: int | None = None) -> None:
+        """Catch up with the record of broken bonds, up to its entry `last` (by default all)."""
+        first, last = self._followed, len(self.breakable.broken) if last is None else last
+        if first == last:
+            return
+        self._followed = last
+        offsets, origins, ends = self.breakable.ends(self.breakable.broken.between(first, last))
+        self._bonds = self._bonds.breaking(offsets, origins)
         # What prescribed particles exert changes only with bonds of theirs.
         touched: Mask = np.logical_or.reduce(self.sound.prescribed, axis=0)
         if touched[origins].any() or touched[ends].any():
             self.rhs = None
-        self.operator = BondOperator(self.bonds, self.operator.moduli, self.prescribed)
+        self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
+
+    def resume(self, aside: Mask, built: int) -> BondOperator:
+        """Take up a run that was saved; returns the operator that its preconditioner was made of.
+
+        Parameters
+        ----------
+        aside : ndarray of bool, shape (N,)
+        built : int
+            How many bonds were gone when the preconditioner was made.
+        """
+        self.aside, self.built = aside, built
+        if aside.any():
+            self._bonds = self._bonds.without_ends(np.nonzero(aside)[0])
+        self.follow(built)
+        return self._operator
 
     def set_aside(self, particles: Indices) -> None:
         """Take particles out of the equations whose bonds have all been broken.
@@ -181,12 +219,12 @@ class Equilibrium:
         nodes = (
             None if self.operator.ended_stiffness is None else self.operator.ended_stiffness.nodes
         )
-        self.bonds = self.bonds.without_ends(particles)
+        self._bonds = self.bonds.without_ends(particles)
         if self.sound.load[:, self.aside].any() or self._unloaded(nodes):
             raise MechanismError("a part on which a load acts has come loose")
         if self.prescribed.all():
             raise MechanismError("all of the body that was free has come loose")
-        self.operator = BondOperator(self.bonds, self.operator.moduli, self.prescribed)
+        self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
         self.rhs = None
         self.x = unknowns[:, self.operator.active].ravel()
         self.preconditioner = None
@@ -274,5 +312,5 @@ class Equilibrium:
             self.preconditioner = known.updated(method.positive(self.operator, self.kind))
         else:
             self.preconditioner = method.preconditioner(self.operator, self.kind)
-        self.built = self.gone
+        self.built = self._followed
         return True
