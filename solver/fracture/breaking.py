@@ -274,7 +274,7 @@ def next_batch(utilisation: Array, least: float, size: int) -> tuple[Indices, Ar
     ----------
     utilisation : ndarray, shape (half, N)
     least : float
-        Bonds below this utilisation (less `TIE`) stay.
+        Bonds below this utilisation (less about `TIE`) stay.
     size : int
 
     Returns
@@ -282,13 +282,29 @@ def next_batch(utilisation: Array, least: float, size: int) -> tuple[Indices, Ar
     flat indices, ascending, and their utilisations
     """
     flat = utilisation.ravel()
-    candidates = np.nonzero(flat >= max(least * (1 - TIE), np.finfo(float).tiny))[0]
+    # A little below what is needed: `_line` looks there.
+    reach = np.nonzero(flat >= max(least * (1 - 3 * TIE), np.finfo(float).tiny))[0]
+    candidates = reach[flat[reach] >= _line(flat[reach], least)]
     values = flat[candidates]
     if len(candidates) > size:
-        threshold = np.partition(values, len(values) - size)[len(values) - size] * (1 - TIE)
-        taken = values >= threshold
+        threshold = np.partition(values, len(values) - size)[len(values) - size]
+        taken = values >= _line(values, threshold)
         candidates, values = candidates[taken], values[taken]
     return candidates, values
+
+
+def _line(values: Array, threshold: float) -> float:
+    """Where to part bonds a little below a threshold: in the widest gap there.
+
+    Mirror images differ by the solver's noise: a line anywhere might run between two of them.
+    """
+    if not np.isfinite(threshold):
+        return threshold
+    low, high = threshold * (1 - 2 * TIE), threshold * (1 - 0.5 * TIE)
+    near = np.sort(values[(values > low) & (values < high)])
+    marks = np.concatenate([[low], near, [high]])
+    widest = int(np.argmax(np.diff(marks)))
+    return float(0.5 * (marks[widest] + marks[widest + 1]))
 
 
 def _refuse_negative(moduli: ElasticModuli, criterion: Criterion) -> None:

@@ -107,7 +107,13 @@ def save(run: Growth, path: str | os.PathLike[str], mark: str) -> None:
         "breaks": run.bonds.broken.records,
         "steps": np.array(run.solves, dtype=np.int64).reshape(-1, 3),
         "history": run.history.array,
-        "ledger": [ledger.work, ledger.dissipated, ledger.excess, ledger.deflection],
+        "ledger": [
+            ledger.work,
+            ledger.dissipated,
+            ledger.excess,
+            ledger.deflection,
+            ledger.whole,
+        ],
         "aside": body.aside,
         "x": body.x,
         "rhs": np.zeros(0) if body.rhs is None else body.rhs,
@@ -150,7 +156,8 @@ def _restore(run: Growth, found: Mapping[str, Any]) -> None:
     bonds.broken.add(*(found["breaks"][name] for name in found["breaks"].dtype.names))
     run.solves += [(int(a), int(b), bool(c)) for a, b, c in found["steps"]]
     run.history.rows += found["history"].tolist()
-    ledger.work, ledger.dissipated, ledger.excess, ledger.deflection = found["ledger"].tolist()
+    ledger.work, ledger.dissipated, ledger.excess, *rest = found["ledger"].tolist()
+    ledger.deflection, ledger.whole = rest
     iterations, worn, built, precise = found["counters"].tolist()
     body.iterations, body.worn, run.precise = iterations, bool(worn), bool(precise)
     body.residual, body.seconds, body.pace = found["residual"].tolist()

@@ -8,6 +8,7 @@ up to date (only what feels the broken bonds) when iterations tell that it does 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from time import perf_counter
 
 import numpy as np
@@ -16,6 +17,7 @@ from threadpoolctl import threadpool_limits
 
 from ..arrays import Array, Indices, Mask
 from ..bonds import Bonds
+from ..bonds.parting import Pieces, part
 from ..errors import ConvergenceError, MechanismError
 from ..linear import Task, TwoLevel, method
 from ..operators import BondOperator
@@ -23,6 +25,7 @@ from ..problem import Discretisation, mechanisms
 from ..problem.rigid import unheld
 from ..solution import Solution, Statistics
 from .breaking import Breakable
+from .crack_path import initial_tips
 
 # Iterations above those that a fresh preconditioner would have taken after which it is brought up
 # to date.
@@ -80,10 +83,16 @@ class Equilibrium:
         self._bonds: Bonds = discretisation.bonds
         self._operator: BondOperator = discretisation.operator
         # How many of the broken bonds these two know.
-        self._followed = 0
+        self._followed, self._resuming = 0, False
         self.tolerance, self.max_iterations = tolerance, max_iterations
         self.kind = discretisation.stability.kind
         self.aside = np.zeros(discretisation.lattice.count, dtype=bool)
+        self._tips = initial_tips(discretisation.scene.cracks, discretisation.scene.region)
+        #: Loads of the outline's nodes, which are more where a crack has parted edges.
+        self.nodal_load: Array | None = discretisation.nodal_load
+        #: Potential energy of the surface's bonds that cracks have cut, at unit load; whoever
+        #: books it sets it back.
+        self.released_by_parting = 0.0
         self.x: Array = np.zeros(self.operator.shape[0])
         self.preconditioner: LinearOperator | None = None
         #: Right-hand side, kept while no bond of a prescribed particle breaks.
@@ -125,7 +134,7 @@ class Equilibrium:
             operator=self.operator,
             values=values,
             load=self.sound.load * factor,
-            nodal_load=None if self.sound.nodal_load is None else self.sound.nodal_load * factor,
+            nodal_load=None if self.nodal_load is None else self.nodal_load * factor,
             prescribed=self.prescribed,
         )
 
@@ -160,7 +169,7 @@ class Equilibrium:
         if surface is None:
             return 0.0
         values = np.nan_to_num(self.unknowns[:, surface.particles])
-        nodal = surface.nodal(values, self.sound.nodal_load)
+        nodal = surface.nodal(values, self.nodal_load)
         if others is None:
             found = surface.energy(values, nodal, values, nodal)
         else:
@@ -169,27 +178,80 @@ class Equilibrium:
 
     def surface_load_work(self) -> float:
         """Σ f·u of the loads on the surface's nodes at unit load, J per unit thickness."""
-        surface, nodal_load = self.operator.ended_stiffness, self.sound.nodal_load
+        surface, nodal_load = self.operator.ended_stiffness, self.nodal_load
         if surface is None or nodal_load is None:
             return 0.0
         nodal = surface.nodal(np.nan_to_num(self.unknowns[:, surface.particles]), nodal_load)
         return float((nodal_load[:, surface.nodes] * nodal).sum()) * self.sound.family.cell_area
 
+    def _surface_potential(self) -> float:
+        """Energy of what ends at the surface less the work of loads there, J per thickness.
+
+        With the operator as it is, whatever the record of broken bonds says.
+        """
+        surface = self._operator.ended_stiffness
+        if surface is None:
+            return 0.0
+        fields = self.sound.values.copy()
+        fields[:, self._operator.active] = self.x.reshape(len(fields), -1)
+        fields[self.prescribed] = self.sound.values[self.prescribed]
+        values = np.where(self.aside, 0.0, fields)[:, surface.particles]
+        nodal = surface.nodal(values, self.nodal_load)
+        found = surface.energy(values, nodal, values, nodal)
+        if self.nodal_load is not None:
+            found -= float((self.nodal_load[:, surface.nodes] * nodal).sum())
+        return found * self.sound.family.cell_area
+
     # ---- changes ------------------------------------------------------------------------
 
     def follow(self, last: int | None = None) -> None:
         """Catch up with the record of broken bonds, up to its entry `last` (by default all)."""
-        first, last = self._followed, len(self.breakable.broken) if last is None else last
+        broken = self.breakable.broken
+        first, last = self._followed, len(broken) if last is None else last
         if first == last:
             return
         self._followed = last
-        offsets, origins, ends = self.breakable.ends(self.breakable.broken.between(first, last))
-        self._bonds = self._bonds.breaking(offsets, origins)
+        bounds = [first, last]
+        if self._bonds.ended is not None:
+            # Where the crack parts the surface depends on what was broken before: solve by solve,
+            # however late the record is followed.
+            step, dropped = (
+                broken.records["step"][first:last],
+                broken.records["dropped"][first:last],
+            )
+            change = (step[1:] != step[:-1]) | (dropped[1:] != dropped[:-1])
+            bounds[1:1] = (first + 1 + np.nonzero(change)[0]).tolist()
         # What prescribed particles exert changes only with bonds of theirs.
         touched: Mask = np.logical_or.reduce(self.sound.prescribed, axis=0)
-        if touched[origins].any() or touched[ends].any():
-            self.rhs = None
+        for begin, end in pairwise(bounds):
+            offsets, origins, ends = self.breakable.ends(broken.between(begin, end))
+            self._bonds = self._bonds.breaking(offsets, origins)
+            if self._bonds.ended is not None and not broken.records["dropped"][begin]:
+                self._part(offsets, origins)
+            if touched[origins].any() or touched[ends].any():
+                self.rhs = None
         self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
+
+    def _part(self, offsets: Indices, origins: Indices) -> None:
+        """Cut what ends at the surface where the crack runs through it."""
+        ended = self._bonds.ended
+        assert ended is not None
+        pieces = Pieces.of(self.sound.bonds, ended.outline, offsets, origins)
+        parted = part(ended, self.sound.lattice, pieces, self._tips)
+        if parted is None:
+            return
+        left, origin = parted
+        before = 0.0 if self._resuming else self._surface_potential()
+        self._bonds = self._bonds.ending(left)
+        if self.nodal_load is not None:
+            self.nodal_load = np.where(origin >= 0, self.nodal_load[:, origin], 0.0)
+        self.rhs = None
+        if self._resuming:
+            return
+        if self._unloaded():
+            raise MechanismError("a crack has run through an edge that carries a load")
+        self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
+        self.released_by_parting += before - self._surface_potential()
 
     def resume(self, aside: Mask, built: int) -> BondOperator:
         """Take up a run that was saved; returns the operator that its preconditioner was made of.
@@ -203,8 +265,13 @@ class Equilibrium:
         self.aside, self.built = aside, built
         if aside.any():
             self._bonds = self._bonds.without_ends(np.nonzero(aside)[0])
+        # What was set free has been booked.
+        self._resuming = True
         self.follow(built)
-        return self._operator
+        before = self._operator
+        self.follow()
+        self._resuming = False
+        return before
 
     def set_aside(self, particles: Indices) -> None:
         """Take particles out of the equations whose bonds have all been broken.
@@ -216,11 +283,8 @@ class Equilibrium:
         """
         unknowns = self.unknowns
         self.aside[particles] = True
-        nodes = (
-            None if self.operator.ended_stiffness is None else self.operator.ended_stiffness.nodes
-        )
         self._bonds = self.bonds.without_ends(particles)
-        if self.sound.load[:, self.aside].any() or self._unloaded(nodes):
+        if self.sound.load[:, self.aside].any() or self._unloaded():
             raise MechanismError("a part on which a load acts has come loose")
         if self.prescribed.all():
             raise MechanismError("all of the body that was free has come loose")
@@ -229,14 +293,14 @@ class Equilibrium:
         self.x = unknowns[:, self.operator.active].ravel()
         self.preconditioner = None
 
-    def _unloaded(self, nodes: Indices | None) -> bool:
-        """Whether loads act on nodes at which bonds ended and no longer do."""
-        if nodes is None or self.sound.nodal_load is None:
+    def _unloaded(self) -> bool:
+        """Whether loads act on nodes at which no bond ends any more."""
+        if self.nodal_load is None:
             return False
-        left = np.zeros(self.sound.nodal_load.shape[1], dtype=bool)
-        if self.bonds.ended is not None:
-            left[self.bonds.ended.outline.edges[self.bonds.ended.edge]] = True
-        return bool(self.sound.nodal_load[:, nodes[~left[nodes]]].any())
+        left = np.zeros(self.nodal_load.shape[1], dtype=bool)
+        if self._bonds.ended is not None:
+            left[self._bonds.ended.outline.edges[self._bonds.ended.edge]] = True
+        return bool(self.nodal_load[:, ~left].any())
 
     def slack(self) -> Indices:
         """Particles whose own bonds leave them a motion without stiffness."""

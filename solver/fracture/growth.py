@@ -15,7 +15,6 @@ from ..arrays import Array, Indices, Mask
 from ..bonds import damage
 from ..errors import ConvergenceError, NegativeCurvatureError, SceneError
 from ..geometry import Where
-from ..problem import Discretisation
 from ..result import Result, Table
 from ..scene import Scene
 from ..solution import Solution
@@ -77,7 +76,6 @@ class Growth(Result):
         # Whether the last equilibrium keeps the tolerance, or is one within an avalanche.
         self.precise = True
         self.solves: list[tuple[int, int, bool]] = []
-        self._at_edge = _edge_particles(start)
         self._starts = crack_path.initial_tips(scene.cracks, scene.region)
         self._paths: tuple[int, list[CrackPath]] = (-1, [])
 
@@ -242,8 +240,23 @@ class Growth(Result):
             self._drop(self.body.loose())
             self.resting = True
             self.record()
+            self._ended()
         else:
             self._load(float(utilisation.max(initial=0.0)))
+
+    def _ended(self) -> bool:
+        """Whether nothing is left to do at a state of rest; says so in `reason`."""
+        h = self.history
+        if len(self.bonds.broken) and self.ledger.unloaded:
+            self.reason = "the body has parted"
+        elif self.programme.least_force is not None and len(h):
+            peak = float(np.abs(h["force"]).max())
+            now = abs(float(h["force"][-1]))
+            if len(self.bonds.broken) and peak > 0 and now < self.programme.least_force * peak:
+                self.reason = (
+                    f"the force has fallen below {self.programme.least_force:g} of its peak"
+                )
+        return bool(self.reason)
 
     def _load(self, largest: float) -> None:
         """Change the load to the next event or the next target."""
@@ -276,6 +289,11 @@ class Growth(Result):
             batch = batch[:0]
         if event > self.programme.stop or not len(batch):
             self._drop(self.body.loose())
+            if self.ledger.unloaded:
+                self.resting = True
+                self.record()
+                self.reason = "the body has parted"
+                return
             if np.isfinite(self.programme.stop):
                 self._move(self.programme.stop)
             self.resting = True
@@ -285,15 +303,10 @@ class Growth(Result):
         self._move(max(event, self.programme.start))
         self.resting = True
         self.record()
+        if self._ended():
+            return
         self.resting = False
         self._break(batch)
-
-    def _parts_an_edge(self, batch: Indices) -> bool:
-        """Whether a bond between neighbours beside a free edge is to break."""
-        assert self._at_edge is not None
-        _, origins, ends = self.bonds.ends(batch)
-        near = self.bonds.lengths(batch) <= crack_path.SHORT * self.scene.spacing
-        return bool((near & self._at_edge[origins] & self._at_edge[ends]).any())
 
     def _event(self, largest: float) -> float:
         """Load factor of the next event; infinite if bonds bear nothing but the solver's noise."""
@@ -309,12 +322,6 @@ class Growth(Result):
         self.load_factor = factor
 
     def _break(self, batch: Indices) -> None:
-        if self._at_edge is not None and self._parts_an_edge(batch):
-            self.reason = (
-                "a crack has come to a free edge, and surface='extrapolated' cannot part edges: "
-                "use surface='volume' beyond"
-            )
-            return
         self.ledger.broken(batch, self.load_factor)
         self._remove(batch, dropped=False)
         self._drop(self.body.slack())
@@ -342,6 +349,8 @@ class Growth(Result):
     def _remove(self, bonds: Indices, dropped: bool) -> None:
         step = len(self.solves)
         self.bonds.broken.add(bonds, step, self.load_factor, dropped)
+        self.body.follow()
+        self.ledger.parted(self.load_factor)
 
     def _drop(self, particles: Indices) -> None:
         """Set aside particles that cannot carry load, and others that this leaves slack."""
@@ -369,17 +378,6 @@ class Growth(Result):
             settled=float(self.resting),
             **{name: float(monitor(self)) for name, monitor in self._monitors.items()},
         )
-
-
-def _edge_particles(start: Discretisation) -> Mask | None:
-    """Particles within a cell of an edge of the region (not of a crack's face), or None."""
-    ended = start.bonds.ended
-    if ended is None:
-        return None
-    found = np.zeros(start.lattice.count, dtype=bool)
-    near = (ended.outline.face[ended.edge] == 0) & (ended.length < start.family.spacing)
-    found[ended.particle[near]] = True
-    return found
 
 
 def _batch_size(batch: int | None, offsets: NDArray[np.int64]) -> int:

@@ -159,7 +159,7 @@ def test_a_branch_is_a_tip_of_its_own():
     assert len(trace(ORIGIN, marks, 1.0, np.arange(len(marks)), branch=9.0)) == 1
 
 
-@pytest.mark.parametrize("surface", ["volume"])
+@pytest.mark.parametrize("surface", ["volume", "extrapolated"])
 def test_a_holed_plate_has_a_crack_on_either_side(surface):
     pull = Support.where(
         lambda x, y: abs(y) > 10, displacement=lambda x, y: y[:, None] * [0, 1e-3], rotation=0.0
