@@ -10,6 +10,7 @@ joins what the crack separates: as for cracks that were always there.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import shapely
@@ -28,6 +29,8 @@ _SHORT = 1e-3
 _ON = 1.5
 # Least length of an edge that splitting makes, in cells: nearer to a node, that is doubled.
 _LEAST = 0.1
+# How far before its end a bond is asked on which side of the crack it is, in cells.
+_BEFORE = 0.3
 # Sine of the angle below which a piece runs along an edge and not through it.
 _ALONG = 0.3
 
@@ -132,13 +135,7 @@ def part(
     kept[near] = ~crossed(
         lattice.points[ended.particle[near]], _on(ended.outline, ended.edge, ended.position)[near]
     )
-    left = replace(
-        ended,
-        **{
-            name: getattr(ended, name)[kept]
-            for name in ("particle", "offset", "edge", "position", "length")
-        },
-    )
+    left = _kept(ended, kept)
     chords = ended.chords
     if chords is not None and len(chords.offset):
         a, b = (_on(ended.outline, chords.edge[:, k], chords.position[:, k]) for k in (0, 1))
@@ -241,11 +238,12 @@ def _split(
 
 
 def _sided(ended: EndedBonds, pair: tuple[int, int], across: Array, lattice: Lattice) -> EndedBonds:
-    """Bonds that end just where the crack comes out belong to the side on which they start.
+    """Bonds that end where the crack comes out belong to the side from which they come.
 
-    `pair`: the edges before and after that point.
+    `pair`: the edges before and after that point. A bond that ends just there is given to the
+    right one; one that ends between that point and the node that was doubled in its stead goes.
     """
-    outline = ended.outline
+    outline, h = ended.outline, lattice.spacing
     before, after = pair
     place = outline.nodes[outline.edges[before, 1]]
 
@@ -254,13 +252,30 @@ def _sided(ended: EndedBonds, pair: tuple[int, int], across: Array, lattice: Lat
         return np.asarray(across[0] * away[:, 1] - across[1] * away[:, 0] > 0)
 
     size = outline.length[list(pair)]
-    at_end = (ended.edge == before) & ((1 - ended.position) * size[0] <= _TOUCH * lattice.spacing)
-    at_start = (ended.edge == after) & (ended.position * size[1] <= _TOUCH * lattice.spacing)
-    here = np.nonzero(at_end | at_start)[0]
+    away = np.full(len(ended), np.inf)
+    mine, other = ended.edge == before, ended.edge == after
+    away[mine] = (1 - ended.position[mine]) * size[0]
+    away[other] = ended.position[other] * size[1]
+    here = np.nonzero(away <= _LEAST * h)[0]
     if not len(here):
         return ended
+    # Seen from a little before its end, where the piece is the crack.
+    end = _on(outline, ended.edge[here], ended.position[here])
+    back = lattice.points[ended.particle[here]] - end
+    back *= np.minimum(1.0, _BEFORE * h / np.maximum(np.hypot(*back.T), 1e-300))[:, None]
     first = side(outline.nodes[outline.edges[before, :1]])[0]
-    same = side(lattice.points[ended.particle[here]]) == first
+    wanted = np.where(side(end + back) == first, before, after)
+    wrong = wanted != ended.edge[here]
+    at = away[here] <= _TOUCH * h
+    moved, gone = here[wrong & at], here[wrong & ~at]
     edge, position = ended.edge.copy(), ended.position.copy()
-    edge[here], position[here] = np.where(same, before, after), np.where(same, 1.0, 0.0)
-    return replace(ended, edge=edge, position=position)
+    edge[moved] = wanted[wrong & at]
+    position[moved] = np.where(edge[moved] == before, 1.0, 0.0)
+    ended = replace(ended, edge=edge, position=position)
+    return _kept(ended, ~np.isin(np.arange(len(ended)), gone)) if len(gone) else ended
+
+
+def _kept(ended: EndedBonds, kept: Mask) -> EndedBonds:
+    names = ("particle", "offset", "edge", "position", "length")
+    fewer: dict[str, Any] = {name: getattr(ended, name)[kept] for name in names}
+    return replace(ended, **fewer)

@@ -57,7 +57,9 @@ def test_nothing_that_ends_at_the_surface_joins_what_a_crack_parts(angle, shift)
             surface.own, [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)], strict=True
         )
     )
-    assert surface.energy(values, nodal, values, nodal) <= 1e-9 * own
+    # Nodes that too few bonds hold follow their neighbours, with 1e-7 of a node's stiffness; one
+    # bond across would hold 1e-3.
+    assert surface.energy(values, nodal, values, nodal) <= 1e-7 * own
 
 
 def test_a_crack_within_the_body_leaves_its_surface_alone():
