@@ -21,12 +21,13 @@ from scipy import sparse
 from threadpoolctl import threadpool_limits
 
 from ..errors import SceneError
-from ..linear import TwoLevel, method
+from ..linear import Border, TwoLevel, method
 from ..operators import BondOperator
 
 if TYPE_CHECKING:
     from .growth import Growth
 
+_BORDER = ("coupling", "stiffness", "force")
 # What is hashed into the file to tell damage from content.
 _DIGEST = "digest"
 
@@ -73,6 +74,9 @@ def fingerprint(run: Growth) -> str:
         run.options,
         run.history.names,
     ]
+    if start.constraints is not None:
+        basis = start.constraints.basis
+        parts += [start.constraints.slaves, basis.data, basis.indices, basis.indptr]
     if start.bonds.ended is not None:
         ended = start.bonds.ended
         parts += [ended.particle, ended.offset, ended.edge, ended.position, ended.length]
@@ -117,6 +121,7 @@ def save(run: Growth, path: str | os.PathLike[str], mark: str) -> None:
         "aside": body.aside,
         "x": body.x,
         "rhs": np.zeros(0) if body.rhs is None else body.rhs,
+        "masters": body.masters,
         "counters": [body.iterations, int(body.worn), body.built, int(run.precise)],
         "residual": [body.residual, body.seconds, body.pace],
     }
@@ -128,6 +133,8 @@ def save(run: Growth, path: str | os.PathLike[str], mark: str) -> None:
             "coarse_indptr": coarse.indptr,
             "coarse_cells": body.preconditioner.hats.coarsening,
         }
+    if body.border is not None:
+        arrays |= {f"border_{name}": getattr(body.border, name) for name in _BORDER}
     _write(path, arrays)
 
 
@@ -170,6 +177,9 @@ def _restore(run: Growth, found: Mapping[str, Any]) -> None:
         body.preconditioner = TwoLevel(operator, int(found["coarse_cells"]), coarse=coarse)
     body.x = found["x"]
     body.rhs = found["rhs"] if len(found["rhs"]) else None
+    body.masters = found["masters"]
+    if body.rhs is not None and "border_force" in found:
+        body.border = Border(*(found[f"border_{name}"] for name in _BORDER))
 
 
 def check(path: str | os.PathLike[str]) -> None:

@@ -19,9 +19,10 @@ from ..arrays import Array, Indices, Mask
 from ..bonds import Bonds
 from ..bonds.parting import Pieces, part
 from ..errors import ConvergenceError, MechanismError
-from ..linear import Task, TwoLevel, method
+from ..linear import Border, Bordered, BorderedInverse, Task, TwoLevel, method
 from ..operators import BondOperator
 from ..problem import Discretisation, mechanisms
+from ..problem.constraints import border
 from ..problem.rigid import unheld
 from ..solution import Solution, Statistics
 from .breaking import Breakable
@@ -95,8 +96,14 @@ class Equilibrium:
         self.released_by_parting = 0.0
         self.x: Array = np.zeros(self.operator.shape[0])
         self.preconditioner: LinearOperator | None = None
-        #: Right-hand side, kept while no bond of a prescribed particle breaks.
+        #: Right-hand side, and what constraints add to the equations, kept while no bond of a
+        #: prescribed particle breaks.
         self.rhs: Array | None = None
+        self.border: Border | None = None
+        constraints = discretisation.constraints
+        #: Free masters of the constraints at unit load, shape (masters,).
+        self.masters: Array = np.zeros(0 if constraints is None else constraints.count)
+        self._bordered: BorderedInverse | None = None
         self.iterations, self.residual, self.seconds = 0, 0.0, 0.0
         # For the preconditioner: iterations a decade of the residual when it was fresh, whether it
         # is due, and how many bonds were gone when it was made.
@@ -126,6 +133,10 @@ class Equilibrium:
 
     def discretisation(self, factor: float = 1.0) -> Discretisation:
         """The body as it is now, under `factor` times its scene's load."""
+        return self._before_masters(factor).moved(factor * self.masters)
+
+    def _before_masters(self, factor: float = 1.0) -> Discretisation:
+        """The same with the masters at zero."""
         values = self.sound.values * factor
         values[:, self.aside] = np.nan
         return replace(
@@ -192,9 +203,10 @@ class Equilibrium:
         surface = self._operator.ended_stiffness
         if surface is None:
             return 0.0
-        fields = self.sound.values.copy()
+        given = self.sound.moved(self.masters).values
+        fields = given.copy()
         fields[:, self._operator.active] = self.x.reshape(len(fields), -1)
-        fields[self.prescribed] = self.sound.values[self.prescribed]
+        fields[self.prescribed] = given[self.prescribed]
         values = np.where(self.aside, 0.0, fields)[:, surface.particles]
         nodal = surface.nodal(values, self.nodal_load)
         found = surface.energy(values, nodal, values, nodal)
@@ -229,7 +241,7 @@ class Equilibrium:
             if self._bonds.ended is not None and not broken.records["dropped"][begin]:
                 self._part(offsets, origins)
             if touched[origins].any() or touched[ends].any():
-                self.rhs = None
+                self.rhs = self.border = None
         self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
 
     def _part(self, offsets: Indices, origins: Indices) -> None:
@@ -245,7 +257,7 @@ class Equilibrium:
         self._bonds = self._bonds.ending(left)
         if self.nodal_load is not None:
             self.nodal_load = np.where(origin >= 0, self.nodal_load[:, origin], 0.0)
-        self.rhs = None
+        self.rhs = self.border = None
         if self._resuming:
             return
         if self._unloaded():
@@ -289,7 +301,7 @@ class Equilibrium:
         if self.prescribed.all():
             raise MechanismError("all of the body that was free has come loose")
         self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
-        self.rhs = None
+        self.rhs = self.border = None
         self.x = unknowns[:, self.operator.active].ravel()
         self.preconditioner = None
 
@@ -309,7 +321,9 @@ class Equilibrium:
     def loose(self) -> Indices:
         """Particles of parts that nothing holds any more."""
         held = self.prescribed
-        found = [members for members, _ in unheld(self.bonds, held, self.operator.moduli.physics)]
+        physics, constraints = self.operator.moduli.physics, self.sound.constraints
+        parts = unheld(self.bonds, held, physics, constraints)
+        found = [members for members, _ in parts]
         none = np.zeros(len(self.aside), dtype=bool)
         return np.nonzero(np.logical_or.reduce([none, *found]) & ~held.all(axis=0))[0]
 
@@ -337,18 +351,24 @@ class Equilibrium:
         with threadpool_limits(limits=1, user_api="blas"):
             operator = self.operator
             if self.rhs is None:
-                self.rhs = self.discretisation().right_hand_side()
-            rhs = self.rhs
+                unmoved = self._before_masters()
+                self.rhs = unmoved.right_hand_side()
+                self.border = None if unmoved.constraints is None else border(unmoved)
+            rhs, system = self.rhs, operator
             if operator.identity_rows is not None:
                 given = self.sound.values[:, operator.active]
                 self.x.reshape(given.shape)[operator.identity_rows] = given[operator.identity_rows]
             before = self.x
-            left = rhs - operator.matvec(before)
+            if self.border is not None:
+                rhs = np.concatenate([rhs, self.border.force])
+                before = np.concatenate([before, self.masters])
+                system = Bordered(operator, self.border)
+            left = rhs - system.matvec(before)
             refreshed = self._prepare()
             task = Task(rhs, before, tolerance, self.max_iterations)
-            assert self.preconditioner is not None
-            self.x, iterations = method.iterate(operator, self.kind, self.preconditioner, task)
-            right = rhs - operator.matvec(self.x)
+            inverse = self._inverse()
+            after_x, iterations = method.iterate(operator, self.kind, inverse, task, self.border)
+            right = rhs - system.matvec(after_x)
             size, after = float(np.linalg.norm(rhs)), float(np.linalg.norm(right))
             residual = after / size if size else 0.0
             decades = np.log10(max(float(np.linalg.norm(left)), 1e-300) / max(after, 1e-300))
@@ -359,13 +379,27 @@ class Equilibrium:
             self.iterations += iterations
             self.residual, self.seconds = residual, self.seconds + perf_counter() - begun
             if not residual <= tolerance:
-                self.x = before
                 raise ConvergenceError(
                     f"equilibrium stopped at a relative residual of {residual:.2e} after "
                     f"{iterations} iterations; {tolerance:.1e} was asked for"
                 )
-            released = 0.5 * float((self.x - before) @ (left + right))
+            released = 0.5 * float((after_x - before) @ (left + right))
+            self.x, self.masters = np.split(after_x, [operator.shape[0]])
         return Step(iterations, refreshed, released * self.sound.family.cell_area)
+
+    def _inverse(self) -> LinearOperator:
+        """The preconditioner, with the border if there is one."""
+        assert self.preconditioner is not None
+        if self.border is None or self.kind == "indefinite":
+            return self.preconditioner
+        known = self._bordered
+        if (
+            known is None
+            or known.inverse is not self.preconditioner
+            or known.border is not self.border
+        ):
+            known = self._bordered = BorderedInverse(self.preconditioner, self.border)
+        return known
 
     def _prepare(self) -> bool:
         """Make or bring up to date the preconditioner where it is due; whether it was."""

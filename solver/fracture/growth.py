@@ -62,7 +62,7 @@ class Growth(Result):
         max_iterations: int,
         monitors: Mapping[str, Callable[[Growth], float]],
     ) -> None:
-        start = scene.discretise(sharp_tips=False)
+        start = scene.discretise(sharp_tips=False, constrained=True)
         self.scene, self.programme, self.reason = scene, programme, ""
         self.bonds = Breakable(start, toughness, no_fail, tension_only, criterion)
         self.batch = _batch_size(batch, start.family.offsets)

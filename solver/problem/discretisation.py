@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
@@ -14,8 +14,10 @@ from ..errors import MechanismError, SceneError
 from ..geometry import Lattice, Outline, Quadrature
 from ..material import Family, Moduli, Stability, calibrated, require_admissible
 from ..operators import BondOperator
+from . import constraints as constraints_of
 from . import mechanisms
 from .conditions import evaluate
+from .constraints import Constraints
 from .description import Description
 
 
@@ -37,6 +39,8 @@ class Discretisation:
         Loads of the surface's nodes, per volume of a particle.
     seconds : float
         Wall time that building all this took.
+    constraints : Constraints, optional
+        Of rigid pins and tied unknowns; slaves are among the prescribed.
     """
 
     scene: Description
@@ -51,16 +55,40 @@ class Discretisation:
     load: Array
     nodal_load: Array | None
     seconds: float
+    constraints: Constraints | None = None
 
     @classmethod
-    def of(cls, scene: Description, sharp_tips: bool = True) -> Discretisation:
-        """Build it, cheap checks first."""
+    def of(
+        cls, scene: Description, sharp_tips: bool = True, constrained: bool = False
+    ) -> Discretisation:
+        """Build it, cheap checks first.
+
+        Parameters
+        ----------
+        scene : Description
+        sharp_tips : bool
+        constrained : bool
+            Whether the caller knows rigid pins and tied unknowns. Slaves are among the
+            `prescribed`: who does not ask for `constraints` would take them for clamped.
+
+        Raises
+        ------
+        SceneError
+            If the scene has constraints and the caller does not know them.
+        """
         begun = perf_counter()
         family = scene.family()
         moduli = calibrated(family, scene.material, scene.calibration, scene.law)
         stability = require_admissible(family, moduli)
         lattice = Lattice(scene.region, scene.spacing, family.reach)
+        if not constrained and any(support.constrains for support in scene.supports):
+            raise SceneError(
+                "rigid pins and equal unknowns (Support.pin, Support.equal) are known to statics "
+                "and fracture only: prescribe displacements instead"
+            )
         prescribed, values = _supports(scene, lattice, moduli)
+        relating = [support for support in scene.supports if support.constrains]
+        constraints = constraints_of.build(relating, lattice, moduli, prescribed, values)
         load = _loads(scene, lattice, moduli)
         sharp_tips = sharp_tips and scene.broken is None
         edge_loads = _edge_loads(scene, lattice, sharp_tips)
@@ -76,6 +104,7 @@ class Discretisation:
                 prescribed,
                 broken is not None,
                 stability.kind != "indefinite",
+                constraints,
             )
             if not len(loose):
                 break
@@ -110,6 +139,7 @@ class Discretisation:
             load,
             nodal_load,
             seconds,
+            constraints,
         )
 
     @property
@@ -127,6 +157,12 @@ class Discretisation:
             given = self.values[:, operator.active]
             rhs[operator.identity_rows] = operator.identity_scale * given[operator.identity_rows]
         return rhs.ravel()
+
+    def moved(self, masters: Array) -> Discretisation:
+        """The same with the free masters of its constraints known: values like any others."""
+        if self.constraints is None:
+            return self
+        return replace(self, values=self.values + self.constraints.field(masters))
 
     def surface_values(self, unknowns: Array) -> Array | None:
         """Values of the surface's nodes for a field of shape (components, N), if it has nodes."""
@@ -148,6 +184,8 @@ def _supports(scene: Description, lattice: Lattice, moduli: Moduli) -> tuple[Mas
     values = np.zeros((moduli.components, lattice.count))
     scales = moduli.scales(scene.spacing)
     for support in scene.supports:
+        if support.constrains:
+            continue
         columns = support.columns(scene.physics)
         selected = support.select(lattice)
         if not selected.any():
