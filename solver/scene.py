@@ -29,7 +29,7 @@ class Scene(Description):
     True
     """
 
-    def discretise(self, sharp_tips: bool = True) -> Discretisation:
+    def discretise(self, sharp_tips: bool = True, constrained: bool = False) -> Discretisation:
         """Check the scene and turn it into arrays and operators.
 
         Parameters
@@ -37,14 +37,16 @@ class Scene(Description):
         sharp_tips : bool
             Whether the two faces of a crack share the node of each tip (`solver.geometry.outline`);
             they must not where cracks are to grow.
+        constrained : bool
+            Whether the caller knows rigid pins and equal unknowns (`Discretisation.of`).
 
         Raises
         ------
         SceneError, CalibrationError, InadmissibleMaterialError
         """
-        return Discretisation.of(self, sharp_tips)
+        return Discretisation.of(self, sharp_tips, constrained)
 
     def solve(self, tolerance: float = 1e-10, **options: Any) -> Solution:
         """Static (or steady) solution; see `solver.analyses.statics.solve`."""
 
-        return solve(self.discretise(), tolerance=tolerance, **options)
+        return solve(self.discretise(constrained=True), tolerance=tolerance, **options)

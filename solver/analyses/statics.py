@@ -11,8 +11,9 @@ from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
 from ..errors import ConvergenceError
-from ..linear import Task, method
+from ..linear import Bordered, Task, method
 from ..problem import Description, Discretisation
+from ..problem.bordering import border as border_of
 from ..solution import Solution, Statistics
 from .registry import Analysis
 
@@ -60,6 +61,10 @@ def solve(
     with threadpool_limits(limits=1, user_api="blas"):
         rhs = discretisation.right_hand_side()
         start = _start(discretisation, previous)
+        border = None if discretisation.constraints is None else border_of(discretisation)
+        if border is not None:
+            rhs = np.concatenate([rhs, border.force])
+            start = np.concatenate([start, np.zeros(len(border.force))])
         x, iterations = np.zeros_like(rhs), 0
         inverse: LinearOperator | None = None
         if rhs.any():
@@ -68,10 +73,13 @@ def solve(
         ready = perf_counter()
         if inverse is not None:
             task = Task(rhs, start, tolerance, max_iterations)
-            x, iterations = method.iterate(operator, kind, inverse, task)
-        residual = method.relative_residual(operator, x, rhs)
+            x, iterations = method.iterate(operator, kind, inverse, task, border)
+        whole = operator if border is None else Bordered(operator, border)
+        residual = method.relative_residual(whole, x, rhs)
     used = method.name(kind, inverse)
-    found = discretisation.field(x)
+    if border is not None:
+        discretisation = discretisation.moved(x[operator.shape[0] :])
+    found = discretisation.field(x[: operator.shape[0]])
     warnings = discretisation.warnings + discretisation.overlaps(found)
     if tolerance < residual <= method.attainable(operator, x, rhs):
         warnings += (
@@ -127,7 +135,7 @@ def _start(discretisation: Discretisation, previous: Solution | None) -> Array:
 
 def run(scene: Description, tolerance: float = 1e-10, max_iterations: int = 20_000) -> Solution:
     """Discretise a scene and solve it; see `solve`."""
-    return solve(Discretisation.of(scene), tolerance, max_iterations)
+    return solve(Discretisation.of(scene, constrained=True), tolerance, max_iterations)
 
 
 ANALYSIS = Analysis("solve", "Static equilibrium, or steady conduction.", run)

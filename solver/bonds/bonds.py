@@ -182,6 +182,12 @@ class Bonds:
             result.ended = self.ended.without(particles)
         return result
 
+    def ending(self, ended: EndedBonds) -> Bonds:
+        """These bonds with others that end at the surface."""
+        result = copy(self)
+        result.ended = ended if len(ended) else None
+        return result
+
     def exist(self, particles: Indices) -> Mask:
         """Which neighbours the particles have, reached or not, shape (family size, particles)."""
         rows, columns = (axis[particles] for axis in self.lattice.rows_columns)

@@ -30,9 +30,9 @@ nothing.
 Edges along the lattice's rows need one thing more, a thin membrane on the nodes: see
 `solver.operators.skin`.
 
-A bond that a load breaks does not end at a surface: it carries nothing. Ended bonds themselves do
-not break, and a crack that grows out through an edge would leave the edge's nodes whole:
-`solver.fracture` ends a run there. Cracks that meet each other are refused.
+A bond that a load breaks does not end at a surface: it carries nothing. Ended bonds themselves
+have no strength: a crack that grows through them and out through an edge cuts them (`parting`).
+Cracks that meet each other are refused.
 """
 
 from __future__ import annotations

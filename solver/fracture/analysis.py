@@ -29,6 +29,7 @@ def run(
     overload: float | None = None,
     levels: Sequence[float] | None = None,
     control: Control = "fixed",
+    least_force: float | None = None,
     no_fail: Where | None = None,
     tension_only: bool = True,
     criterion: Criterion = "total",
@@ -45,7 +46,7 @@ def run(
     scene : Scene
     G1, G2, n, frequency, axis_degrees, toughness_calibration
         See `Toughness`; G1 and G2 in J/m².
-    start, stop, increment, overload, levels, control
+    start, stop, increment, overload, levels, control, least_force
         See `Programme`.
     advance : float, optional
         The run ends when the furthest tip has gone so far, m.
@@ -60,7 +61,7 @@ def run(
     toughness = Toughness(
         G1, G2, n, frequency, radians(axis_degrees), calibration=toughness_calibration
     )
-    programme = Programme(start, stop, increment, overload, levels, control)
+    programme = Programme(start, stop, increment, overload, levels, control, least_force)
     return grow(
         scene,
         toughness,

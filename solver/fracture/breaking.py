@@ -23,6 +23,7 @@ from ..material.strains import elongations
 from ..operators import segments
 from ..problem import Discretisation
 from . import bond_kernels
+from .broken import BrokenBonds
 
 Criterion = Literal["total", "axial"]
 
@@ -144,11 +145,12 @@ class Breakable:
         self._number = lattice.number()
         #: Factor of every bond as it was at the start, 0 where there is none, (half, N).
         self.whole: Array = np.stack([discretisation.bonds.strength(o) for o in range(half)])
-        #: The same now.
-        self.strengths: Array = self.whole.copy()
+        #: The record of those that have broken.
+        self.broken = BrokenBonds()
+        self._strengths, self._followed = self.whole.copy(), 0
         #: Bonds that must not break, (half, N), or None.
         self.kept: Mask = self._kept(discretisation, no_fail)
-        self._out = np.empty_like(self.strengths)
+        self._out = np.empty_like(self.whole)
         self._grids = np.zeros((2, 3, int(np.prod(lattice.shape))))
 
     def _kept(self, discretisation: Discretisation, no_fail: tuple[Where, ...]) -> Mask:
@@ -157,12 +159,20 @@ class Breakable:
             zone |= select(self.lattice, where)
         held: Mask = np.logical_and.reduce(discretisation.prescribed[:2], axis=0)
         rows, columns = self.lattice.rows_columns
-        kept = np.zeros(self.strengths.shape, dtype=bool)
+        kept = np.zeros(self.whole.shape, dtype=bool)
         for o, (dx, dy) in enumerate(self.family.offsets[: len(kept)]):
             there = self._number[rows + dy, columns + dx]
             # Between prescribed particles nothing can be relieved: the support is rigid.
             kept[o] = zone | zone[there] | (held & held[there])
         return kept
+
+    @property
+    def strengths(self) -> Array:
+        """Factor of every bond as the record of broken bonds leaves it, shape (half, N)."""
+        if self._followed != len(self.broken):
+            self._strengths.ravel()[self.broken.between(self._followed)] = 0.0
+            self._followed = len(self.broken)
+        return self._strengths
 
     # ---- energies -----------------------------------------------------------------------
 
@@ -256,10 +266,6 @@ class Breakable:
             found.append(o * count + starts[self.strengths[o, starts] != 0])
         return np.concatenate(found)
 
-    def remove(self, bonds: Indices) -> None:
-        """Bonds that carry nothing from now on."""
-        self.strengths.ravel()[bonds] = 0.0
-
 
 def next_batch(utilisation: Array, least: float, size: int) -> tuple[Indices, Array]:
     """The most loaded bonds: `size` of them, or a few more where bonds tie.
@@ -268,7 +274,7 @@ def next_batch(utilisation: Array, least: float, size: int) -> tuple[Indices, Ar
     ----------
     utilisation : ndarray, shape (half, N)
     least : float
-        Bonds below this utilisation (less `TIE`) stay.
+        Bonds below this utilisation (less about `TIE`) stay.
     size : int
 
     Returns
@@ -276,13 +282,29 @@ def next_batch(utilisation: Array, least: float, size: int) -> tuple[Indices, Ar
     flat indices, ascending, and their utilisations
     """
     flat = utilisation.ravel()
-    candidates = np.nonzero(flat >= max(least * (1 - TIE), np.finfo(float).tiny))[0]
+    # A little below what is needed: `_line` looks there.
+    reach = np.nonzero(flat >= max(least * (1 - 3 * TIE), np.finfo(float).tiny))[0]
+    candidates = reach[flat[reach] >= _line(flat[reach], least)]
     values = flat[candidates]
     if len(candidates) > size:
-        threshold = np.partition(values, len(values) - size)[len(values) - size] * (1 - TIE)
-        taken = values >= threshold
+        threshold = np.partition(values, len(values) - size)[len(values) - size]
+        taken = values >= _line(values, threshold)
         candidates, values = candidates[taken], values[taken]
     return candidates, values
+
+
+def _line(values: Array, threshold: float) -> float:
+    """Where to part bonds a little below a threshold: in the widest gap there.
+
+    Mirror images differ by the solver's noise: a line anywhere might run between two of them.
+    """
+    if not np.isfinite(threshold):
+        return threshold
+    low, high = threshold * (1 - 2 * TIE), threshold * (1 - 0.5 * TIE)
+    near = np.sort(values[(values > low) & (values < high)])
+    marks = np.concatenate([[low], near, [high]])
+    widest = int(np.argmax(np.diff(marks)))
+    return float(0.5 * (marks[widest] + marks[widest + 1]))
 
 
 def _refuse_negative(moduli: ElasticModuli, criterion: Criterion) -> None:

@@ -21,12 +21,13 @@ from scipy import sparse
 from threadpoolctl import threadpool_limits
 
 from ..errors import SceneError
-from ..linear import TwoLevel, method
+from ..linear import Border, TwoLevel, method
 from ..operators import BondOperator
 
 if TYPE_CHECKING:
     from .growth import Growth
 
+_BORDER = ("coupling", "stiffness", "force")
 # What is hashed into the file to tell damage from content.
 _DIGEST = "digest"
 
@@ -73,6 +74,9 @@ def fingerprint(run: Growth) -> str:
         run.options,
         run.history.names,
     ]
+    if start.constraints is not None:
+        basis = start.constraints.basis
+        parts += [start.constraints.slaves, basis.data, basis.indices, basis.indptr]
     if start.bonds.ended is not None:
         ended = start.bonds.ended
         parts += [ended.particle, ended.offset, ended.edge, ended.position, ended.length]
@@ -104,13 +108,20 @@ def save(run: Growth, path: str | os.PathLike[str], mark: str) -> None:
         "target": run.target,
         "resting": run.resting,
         "reason": run.reason,
-        "breaks": np.array(run.log, dtype=np.float64).reshape(-1, 4),
+        "breaks": run.bonds.broken.records,
         "steps": np.array(run.solves, dtype=np.int64).reshape(-1, 3),
         "history": run.history.array,
-        "ledger": [ledger.work, ledger.dissipated, ledger.excess, ledger.deflection],
+        "ledger": [
+            ledger.work,
+            ledger.dissipated,
+            ledger.excess,
+            ledger.deflection,
+            ledger.whole,
+        ],
         "aside": body.aside,
         "x": body.x,
         "rhs": np.zeros(0) if body.rhs is None else body.rhs,
+        "masters": body.masters,
         "counters": [body.iterations, int(body.worn), body.built, int(run.precise)],
         "residual": [body.residual, body.seconds, body.pace],
     }
@@ -122,6 +133,8 @@ def save(run: Growth, path: str | os.PathLike[str], mark: str) -> None:
             "coarse_indptr": coarse.indptr,
             "coarse_cells": body.preconditioner.hats.coarsening,
         }
+    if body.border is not None:
+        arrays |= {f"border_{name}": getattr(body.border, name) for name in _BORDER}
     _write(path, arrays)
 
 
@@ -147,32 +160,26 @@ def _restore(run: Growth, found: Mapping[str, Any]) -> None:
     body, bonds, ledger = run.body, run.bonds, run.ledger
     run.load_factor, run.target = float(found["factor"]), int(found["target"])
     run.resting, run.reason = bool(found["resting"]), str(found["reason"])
-    run.log += [(int(b), int(s), float(f), bool(d)) for b, s, f, d in found["breaks"]]
+    bonds.broken.add(*(found["breaks"][name] for name in found["breaks"].dtype.names))
     run.solves += [(int(a), int(b), bool(c)) for a, b, c in found["steps"]]
     run.history.rows += found["history"].tolist()
-    ledger.work, ledger.dissipated, ledger.excess, ledger.deflection = found["ledger"].tolist()
-    body.aside = found["aside"]
-    if body.aside.any():
-        body.bonds = body.bonds.without_ends(np.nonzero(body.aside)[0])
-    gone = np.array([entry[0] for entry in run.log], dtype=np.int64)
+    ledger.work, ledger.dissipated, ledger.excess, *rest = found["ledger"].tolist()
+    ledger.deflection, ledger.whole = rest
     iterations, worn, built, precise = found["counters"].tolist()
     body.iterations, body.worn, run.precise = iterations, bool(worn), bool(precise)
     body.residual, body.seconds, body.pace = found["residual"].tolist()
+    before = body.resume(found["aside"], built)
     if "coarse_data" in found:
         # The preconditioner belongs to the bonds there were when it was built.
-        body.break_bonds(*bonds.ends(gone[:built]))
-        operator: BondOperator = method.positive(body.operator, body.kind)
+        operator: BondOperator = method.positive(before, body.kind)
         parts = (found["coarse_data"], found["coarse_indices"], found["coarse_indptr"])
         coarse = sparse.csc_array(parts, shape=(len(parts[2]) - 1,) * 2)
         body.preconditioner = TwoLevel(operator, int(found["coarse_cells"]), coarse=coarse)
-        body.built = built
-        gone_later = gone[built:]
-    else:
-        gone_later = gone
-    body.break_bonds(*bonds.ends(gone_later))
-    bonds.remove(gone)
     body.x = found["x"]
     body.rhs = found["rhs"] if len(found["rhs"]) else None
+    body.masters = found["masters"]
+    if body.rhs is not None and "border_force" in found:
+        body.border = Border(*(found[f"border_{name}"] for name in _BORDER))
 
 
 def check(path: str | os.PathLike[str]) -> None:

@@ -8,6 +8,7 @@ up to date (only what feels the broken bonds) when iterations tell that it does 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from time import perf_counter
 
 import numpy as np
@@ -16,12 +17,16 @@ from threadpoolctl import threadpool_limits
 
 from ..arrays import Array, Indices, Mask
 from ..bonds import Bonds
+from ..bonds.parting import Pieces, part
 from ..errors import ConvergenceError, MechanismError
-from ..linear import Task, TwoLevel, method
+from ..linear import Border, Bordered, BorderedInverse, Task, TwoLevel, method
 from ..operators import BondOperator
 from ..problem import Discretisation, mechanisms
+from ..problem.bordering import border
 from ..problem.rigid import unheld
 from ..solution import Solution, Statistics
+from .breaking import Breakable
+from .crack_path import initial_tips
 
 # Iterations above those that a fresh preconditioner would have taken after which it is brought up
 # to date.
@@ -54,14 +59,14 @@ class Equilibrium:
     Parameters
     ----------
     discretisation : Discretisation
+    breakable : Breakable
+        Its record of broken bonds is what `bonds` and `operator` follow.
     tolerance : float
         Relative residual of every solve.
     max_iterations : int
 
     Attributes
     ----------
-    bonds, operator
-        As they are now.
     unknowns : ndarray, shape (components, N)
         u1, u2 and θ Δx at unit load; NaN at particles set aside.
     aside : ndarray of bool, shape (N,)
@@ -69,22 +74,52 @@ class Equilibrium:
     """
 
     def __init__(
-        self, discretisation: Discretisation, tolerance: float, max_iterations: int
+        self,
+        discretisation: Discretisation,
+        breakable: Breakable,
+        tolerance: float,
+        max_iterations: int,
     ) -> None:
-        self.sound = discretisation
-        self.bonds: Bonds = discretisation.bonds
-        self.operator: BondOperator = discretisation.operator
+        self.sound, self.breakable = discretisation, breakable
+        self._bonds: Bonds = discretisation.bonds
+        self._operator: BondOperator = discretisation.operator
+        # How many of the broken bonds these two know.
+        self._followed, self._resuming = 0, False
         self.tolerance, self.max_iterations = tolerance, max_iterations
         self.kind = discretisation.stability.kind
         self.aside = np.zeros(discretisation.lattice.count, dtype=bool)
+        self._tips = initial_tips(discretisation.scene.cracks, discretisation.scene.region)
+        #: Loads of the outline's nodes, which are more where a crack has parted edges.
+        self.nodal_load: Array | None = discretisation.nodal_load
+        #: Potential energy of the surface's bonds that cracks have cut, at unit load; whoever
+        #: books it sets it back.
+        self.released_by_parting = 0.0
         self.x: Array = np.zeros(self.operator.shape[0])
         self.preconditioner: LinearOperator | None = None
-        #: Right-hand side, kept while no bond of a prescribed particle breaks.
+        #: Right-hand side, and what constraints add to the equations, kept while no bond of a
+        #: prescribed particle breaks.
         self.rhs: Array | None = None
+        self.border: Border | None = None
+        constraints = discretisation.constraints
+        #: Free masters of the constraints at unit load, shape (masters,).
+        self.masters: Array = np.zeros(0 if constraints is None else constraints.count)
+        self._bordered: BorderedInverse | None = None
         self.iterations, self.residual, self.seconds = 0, 0.0, 0.0
         # For the preconditioner: iterations a decade of the residual when it was fresh, whether it
         # is due, and how many bonds were gone when it was made.
-        self.pace, self.worn, self.built, self.gone = 0.0, False, 0, 0
+        self.pace, self.worn, self.built = 0.0, False, 0
+
+    @property
+    def bonds(self) -> Bonds:
+        """Bonds as the record of broken ones leaves them."""
+        self.follow()
+        return self._bonds
+
+    @property
+    def operator(self) -> BondOperator:
+        """Stiffness of these bonds."""
+        self.follow()
+        return self._operator
 
     @property
     def prescribed(self) -> Mask:
@@ -98,6 +133,10 @@ class Equilibrium:
 
     def discretisation(self, factor: float = 1.0) -> Discretisation:
         """The body as it is now, under `factor` times its scene's load."""
+        return self._before_masters(factor).moved(factor * self.masters)
+
+    def _before_masters(self, factor: float = 1.0) -> Discretisation:
+        """The same with the masters at zero."""
         values = self.sound.values * factor
         values[:, self.aside] = np.nan
         return replace(
@@ -106,7 +145,7 @@ class Equilibrium:
             operator=self.operator,
             values=values,
             load=self.sound.load * factor,
-            nodal_load=None if self.sound.nodal_load is None else self.sound.nodal_load * factor,
+            nodal_load=None if self.nodal_load is None else self.nodal_load * factor,
             prescribed=self.prescribed,
         )
 
@@ -143,7 +182,7 @@ class Equilibrium:
         if surface is None:
             return 0.0
         values = np.nan_to_num(self.unknowns[:, surface.particles])
-        nodal = surface.nodal(values, self.sound.nodal_load)
+        nodal = surface.nodal(values, self.nodal_load)
         if others is None:
             found = surface.energy(values, nodal, values, nodal)
         else:
@@ -152,23 +191,101 @@ class Equilibrium:
 
     def surface_load_work(self) -> float:
         """Σ f·u of the loads on the surface's nodes at unit load, J per unit thickness."""
-        surface, nodal_load = self.operator.ended_stiffness, self.sound.nodal_load
+        surface, nodal_load = self.operator.ended_stiffness, self.nodal_load
         if surface is None or nodal_load is None:
             return 0.0
         nodal = surface.nodal(np.nan_to_num(self.unknowns[:, surface.particles]), nodal_load)
         return float((nodal_load[:, surface.nodes] * nodal).sum()) * self.sound.family.cell_area
 
+    def _surface_potential(self) -> float:
+        """Energy of what ends at the surface less the work of loads there, J per thickness.
+
+        With the operator as it is, whatever the record of broken bonds says.
+        """
+        surface = self._operator.ended_stiffness
+        if surface is None:
+            return 0.0
+        given = self.sound.moved(self.masters).values
+        fields = given.copy()
+        fields[:, self._operator.active] = self.x.reshape(len(fields), -1)
+        fields[self.prescribed] = given[self.prescribed]
+        values = np.where(self.aside, 0.0, fields)[:, surface.particles]
+        nodal = surface.nodal(values, self.nodal_load)
+        found = surface.energy(values, nodal, values, nodal)
+        if self.nodal_load is not None:
+            found -= float((self.nodal_load[:, surface.nodes] * nodal).sum())
+        return found * self.sound.family.cell_area
+
     # ---- changes ------------------------------------------------------------------------
 
-    def break_bonds(self, offsets: Indices, origins: Indices, ends: Indices) -> None:
-        """Break bonds, given by half offset and both ends; then `solve` for the equilibrium."""
-        self.bonds = self.bonds.breaking(offsets, origins)
-        self.gone += len(offsets)
+    def follow(self, last: int | None = None) -> None:
+        """Catch up with the record of broken bonds, up to its entry `last` (by default all)."""
+        broken = self.breakable.broken
+        first, last = self._followed, len(broken) if last is None else last
+        if first == last:
+            return
+        self._followed = last
+        bounds = [first, last]
+        if self._bonds.ended is not None:
+            # Where the crack parts the surface depends on what was broken before: solve by solve,
+            # however late the record is followed.
+            step, dropped = (
+                broken.records["step"][first:last],
+                broken.records["dropped"][first:last],
+            )
+            change = (step[1:] != step[:-1]) | (dropped[1:] != dropped[:-1])
+            bounds[1:1] = (first + 1 + np.nonzero(change)[0]).tolist()
         # What prescribed particles exert changes only with bonds of theirs.
         touched: Mask = np.logical_or.reduce(self.sound.prescribed, axis=0)
-        if touched[origins].any() or touched[ends].any():
-            self.rhs = None
-        self.operator = BondOperator(self.bonds, self.operator.moduli, self.prescribed)
+        for begin, end in pairwise(bounds):
+            offsets, origins, ends = self.breakable.ends(broken.between(begin, end))
+            self._bonds = self._bonds.breaking(offsets, origins)
+            if self._bonds.ended is not None and not broken.records["dropped"][begin]:
+                self._part(offsets, origins)
+            if touched[origins].any() or touched[ends].any():
+                self.rhs = self.border = None
+        self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
+
+    def _part(self, offsets: Indices, origins: Indices) -> None:
+        """Cut what ends at the surface where the crack runs through it."""
+        ended = self._bonds.ended
+        assert ended is not None
+        pieces = Pieces.of(self.sound.bonds, ended.outline, offsets, origins)
+        parted = part(ended, self.sound.lattice, pieces, self._tips)
+        if parted is None:
+            return
+        left, origin = parted
+        before = 0.0 if self._resuming else self._surface_potential()
+        self._bonds = self._bonds.ending(left)
+        if self.nodal_load is not None:
+            self.nodal_load = np.where(origin >= 0, self.nodal_load[:, origin], 0.0)
+        self.rhs = self.border = None
+        if self._resuming:
+            return
+        if self._unloaded():
+            raise MechanismError("a crack has run through an edge that carries a load")
+        self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
+        self.released_by_parting += before - self._surface_potential()
+
+    def resume(self, aside: Mask, built: int) -> BondOperator:
+        """Take up a run that was saved; returns the operator that its preconditioner was made of.
+
+        Parameters
+        ----------
+        aside : ndarray of bool, shape (N,)
+        built : int
+            How many bonds were gone when the preconditioner was made.
+        """
+        self.aside, self.built = aside, built
+        if aside.any():
+            self._bonds = self._bonds.without_ends(np.nonzero(aside)[0])
+        # What was set free has been booked.
+        self._resuming = True
+        self.follow(built)
+        before = self._operator
+        self.follow()
+        self._resuming = False
+        return before
 
     def set_aside(self, particles: Indices) -> None:
         """Take particles out of the equations whose bonds have all been broken.
@@ -180,27 +297,24 @@ class Equilibrium:
         """
         unknowns = self.unknowns
         self.aside[particles] = True
-        nodes = (
-            None if self.operator.ended_stiffness is None else self.operator.ended_stiffness.nodes
-        )
-        self.bonds = self.bonds.without_ends(particles)
-        if self.sound.load[:, self.aside].any() or self._unloaded(nodes):
+        self._bonds = self.bonds.without_ends(particles)
+        if self.sound.load[:, self.aside].any() or self._unloaded():
             raise MechanismError("a part on which a load acts has come loose")
         if self.prescribed.all():
             raise MechanismError("all of the body that was free has come loose")
-        self.operator = BondOperator(self.bonds, self.operator.moduli, self.prescribed)
-        self.rhs = None
+        self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
+        self.rhs = self.border = None
         self.x = unknowns[:, self.operator.active].ravel()
         self.preconditioner = None
 
-    def _unloaded(self, nodes: Indices | None) -> bool:
-        """Whether loads act on nodes at which bonds ended and no longer do."""
-        if nodes is None or self.sound.nodal_load is None:
+    def _unloaded(self) -> bool:
+        """Whether loads act on nodes at which no bond ends any more."""
+        if self.nodal_load is None:
             return False
-        left = np.zeros(self.sound.nodal_load.shape[1], dtype=bool)
-        if self.bonds.ended is not None:
-            left[self.bonds.ended.outline.edges[self.bonds.ended.edge]] = True
-        return bool(self.sound.nodal_load[:, nodes[~left[nodes]]].any())
+        left = np.zeros(self.nodal_load.shape[1], dtype=bool)
+        if self._bonds.ended is not None:
+            left[self._bonds.ended.outline.edges[self._bonds.ended.edge]] = True
+        return bool(self.nodal_load[:, ~left].any())
 
     def slack(self) -> Indices:
         """Particles whose own bonds leave them a motion without stiffness."""
@@ -209,7 +323,9 @@ class Equilibrium:
     def loose(self) -> Indices:
         """Particles of parts that nothing holds any more."""
         held = self.prescribed
-        found = [members for members, _ in unheld(self.bonds, held, self.operator.moduli.physics)]
+        physics, constraints = self.operator.moduli.physics, self.sound.constraints
+        parts = unheld(self.bonds, held, physics, constraints)
+        found = [members for members, _ in parts]
         none = np.zeros(len(self.aside), dtype=bool)
         return np.nonzero(np.logical_or.reduce([none, *found]) & ~held.all(axis=0))[0]
 
@@ -237,18 +353,24 @@ class Equilibrium:
         with threadpool_limits(limits=1, user_api="blas"):
             operator = self.operator
             if self.rhs is None:
-                self.rhs = self.discretisation().right_hand_side()
-            rhs = self.rhs
+                unmoved = self._before_masters()
+                self.rhs = unmoved.right_hand_side()
+                self.border = None if unmoved.constraints is None else border(unmoved)
+            rhs, system = self.rhs, operator
             if operator.identity_rows is not None:
                 given = self.sound.values[:, operator.active]
                 self.x.reshape(given.shape)[operator.identity_rows] = given[operator.identity_rows]
             before = self.x
-            left = rhs - operator.matvec(before)
+            if self.border is not None:
+                rhs = np.concatenate([rhs, self.border.force])
+                before = np.concatenate([before, self.masters])
+                system = Bordered(operator, self.border)
+            left = rhs - system.matvec(before)
             refreshed = self._prepare()
             task = Task(rhs, before, tolerance, self.max_iterations)
-            assert self.preconditioner is not None
-            self.x, iterations = method.iterate(operator, self.kind, self.preconditioner, task)
-            right = rhs - operator.matvec(self.x)
+            inverse = self._inverse()
+            after_x, iterations = method.iterate(operator, self.kind, inverse, task, self.border)
+            right = rhs - system.matvec(after_x)
             size, after = float(np.linalg.norm(rhs)), float(np.linalg.norm(right))
             residual = after / size if size else 0.0
             decades = np.log10(max(float(np.linalg.norm(left)), 1e-300) / max(after, 1e-300))
@@ -258,14 +380,28 @@ class Equilibrium:
             self.worn = bool(iterations > self.pace * decades + _PATIENCE)
             self.iterations += iterations
             self.residual, self.seconds = residual, self.seconds + perf_counter() - begun
-            if not residual <= max(tolerance, method.attainable(operator, self.x, rhs)):
-                self.x = before
+            if not residual <= max(tolerance, method.attainable(operator, after_x, rhs)):
                 raise ConvergenceError(
                     f"equilibrium stopped at a relative residual of {residual:.2e} after "
                     f"{iterations} iterations; {tolerance:.1e} was asked for"
                 )
-            released = 0.5 * float((self.x - before) @ (left + right))
+            released = 0.5 * float((after_x - before) @ (left + right))
+            self.x, self.masters = np.split(after_x, [operator.shape[0]])
         return Step(iterations, refreshed, released * self.sound.family.cell_area)
+
+    def _inverse(self) -> LinearOperator:
+        """The preconditioner, with the border if there is one."""
+        assert self.preconditioner is not None
+        if self.border is None or self.kind == "indefinite":
+            return self.preconditioner
+        known = self._bordered
+        if (
+            known is None
+            or known.inverse is not self.preconditioner
+            or known.border is not self.border
+        ):
+            known = self._bordered = BorderedInverse(self.preconditioner, self.border)
+        return known
 
     def _prepare(self) -> bool:
         """Make or bring up to date the preconditioner where it is due; whether it was."""
@@ -276,5 +412,5 @@ class Equilibrium:
             self.preconditioner = known.updated(method.positive(self.operator, self.kind))
         else:
             self.preconditioner = method.preconditioner(self.operator, self.kind)
-        self.built = self.gone
+        self.built = self._followed
         return True

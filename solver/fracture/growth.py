@@ -15,7 +15,6 @@ from ..arrays import Array, Indices, Mask
 from ..bonds import damage
 from ..errors import ConvergenceError, NegativeCurvatureError, SceneError
 from ..geometry import Where
-from ..problem import Discretisation
 from ..result import Result, Table
 from ..scene import Scene
 from ..solution import Solution
@@ -63,11 +62,11 @@ class Growth(Result):
         max_iterations: int,
         monitors: Mapping[str, Callable[[Growth], float]],
     ) -> None:
-        start = scene.discretise(sharp_tips=False)
+        start = scene.discretise(sharp_tips=False, constrained=True)
         self.scene, self.programme, self.reason = scene, programme, ""
         self.bonds = Breakable(start, toughness, no_fail, tension_only, criterion)
         self.batch = _batch_size(batch, start.family.offsets)
-        self.body = Equilibrium(start, tolerance, max_iterations)
+        self.body = Equilibrium(start, self.bonds, tolerance, max_iterations)
         self.ledger = Ledger(self.body, self.bonds)
         # Solver options that decide results, for checkpoints.
         self.options = (tension_only, criterion, self.batch, tolerance, max_iterations)
@@ -76,9 +75,7 @@ class Growth(Result):
         self.load_factor, self.target, self.resting = programme.start, 0, True
         # Whether the last equilibrium keeps the tolerance, or is one within an avalanche.
         self.precise = True
-        self.log: list[tuple[int, int, float, bool]] = []
         self.solves: list[tuple[int, int, bool]] = []
-        self._at_edge = _edge_particles(start)
         self._starts = crack_path.initial_tips(scene.cracks, scene.region)
         self._paths: tuple[int, list[CrackPath]] = (-1, [])
 
@@ -91,12 +88,14 @@ class Growth(Result):
         `step` is the number of the solve before which the bond broke. Bonds of one batch are in
         no order.
         """
-        kept = [b[:3] for b in self.log if not b[3]]
-        count = self.bonds.lattice.count
-        return np.array(
-            [(b // count, b % count, step, factor) for b, step, factor in kept],
+        kept = self.bonds.broken.by_load
+        found = np.zeros(
+            len(kept),
             dtype=[("offset", "i8"), ("origin", "i8"), ("step", "i8"), ("load_factor", "f8")],
         )
+        found["offset"], found["origin"] = np.divmod(kept["bond"], self.bonds.lattice.count)
+        found["step"], found["load_factor"] = kept["step"], kept["load_factor"]
+        return found
 
     @property
     def steps(self) -> NDArray[Any]:
@@ -108,14 +107,12 @@ class Growth(Result):
     @property
     def broken_bonds(self) -> Indices:
         """Flat indices (half offset · N + particle of origin) of broken bonds, in their order."""
-        return np.array([b[0] for b in self.log if not b[3]], dtype=np.int64)
+        return self.bonds.broken.by_load["bond"]
 
     @property
     def broken(self) -> Mask:
         """Broken bonds as `Scene.broken` returns them, shape (family size / 2, N)."""
-        mask = np.zeros(self.bonds.strengths.shape, dtype=bool)
-        mask.ravel()[self.broken_bonds] = True
-        return mask
+        return self.bonds.broken.mask(self.bonds.whole.shape)
 
     @property
     def loose(self) -> Mask:
@@ -140,18 +137,25 @@ class Growth(Result):
 
     @property
     def paths(self) -> list[CrackPath]:
-        """Way of each crack tip of the scene, the furthest first; see `crack_path`."""
-        if self._paths[0] != len(self.log):
-            broken = self.broken_bonds
-            short = self.bonds.lengths(broken) <= crack_path.SHORT * self.scene.spacing
-            marks = self.bonds.midpoints(broken[short])
-            starts = self._starts
-            if not len(starts) and len(marks):
-                first = [b[1] for b in self.log if not b[3]]
-                early = np.array(first)[short]
-                starts = marks[early == early.min()].mean(axis=0)[None]
-            traced = crack_path.trace(starts, marks, self.scene.spacing)
-            self._paths = len(self.log), traced
+        """Ways of all crack tips, the furthest first; see `crack_path`.
+
+        Every tip of the scene's cracks has one, however short, and every other tip that there is:
+        of cracks that have begun by themselves (both of them, where one grew both ways), and of
+        branches.
+        """
+        known = len(self.bonds.broken)
+        if self._paths[0] != known:
+            records = self.bonds.broken.by_load
+            short = self.bonds.lengths(records["bond"]) <= crack_path.SHORT * self.scene.spacing
+            records = records[short]
+            traced = crack_path.trace(
+                self._starts,
+                self.bonds.midpoints(records["bond"]),
+                self.scene.spacing,
+                records["step"],
+                max(5.0, self.scene.m),
+            )
+            self._paths = known, traced
         return self._paths[1]
 
     @property
@@ -242,8 +246,23 @@ class Growth(Result):
             self._drop(self.body.loose())
             self.resting = True
             self.record()
+            self._ended()
         else:
             self._load(float(utilisation.max(initial=0.0)))
+
+    def _ended(self) -> bool:
+        """Whether nothing is left to do at a state of rest; says so in `reason`."""
+        h = self.history
+        if len(self.bonds.broken) and self.ledger.unloaded:
+            self.reason = "the body has parted"
+        elif self.programme.least_force is not None and len(h):
+            peak = float(np.abs(h["force"]).max())
+            now = abs(float(h["force"][-1]))
+            if len(self.bonds.broken) and peak > 0 and now < self.programme.least_force * peak:
+                self.reason = (
+                    f"the force has fallen below {self.programme.least_force:g} of its peak"
+                )
+        return bool(self.reason)
 
     def _load(self, largest: float) -> None:
         """Change the load to the next event or the next target."""
@@ -276,6 +295,11 @@ class Growth(Result):
             batch = batch[:0]
         if event > self.programme.stop or not len(batch):
             self._drop(self.body.loose())
+            if self.ledger.unloaded:
+                self.resting = True
+                self.record()
+                self.reason = "the body has parted"
+                return
             if np.isfinite(self.programme.stop):
                 self._move(self.programme.stop)
             self.resting = True
@@ -285,22 +309,18 @@ class Growth(Result):
         self._move(max(event, self.programme.start))
         self.resting = True
         self.record()
+        if self._ended():
+            return
         self.resting = False
         self._break(batch)
-
-    def _parts_an_edge(self, batch: Indices) -> bool:
-        """Whether a bond between neighbours beside a free edge is to break."""
-        assert self._at_edge is not None
-        _, origins, ends = self.bonds.ends(batch)
-        near = self.bonds.lengths(batch) <= crack_path.SHORT * self.scene.spacing
-        return bool((near & self._at_edge[origins] & self._at_edge[ends]).any())
 
     def _event(self, largest: float) -> float:
         """Load factor of the next event; infinite if bonds bear nothing but the solver's noise."""
         if largest <= 0.0:
             return float(np.inf)
         event = float(1.0 / np.sqrt(largest))
-        before = max((entry[2] for entry in self.log), default=np.inf)
+        before = self.bonds.broken.records["load_factor"].max(initial=-np.inf)
+        before = np.inf if before == -np.inf else before
         return event if event * np.sqrt(_NOISE) < before else float(np.inf)
 
     def _move(self, factor: float) -> None:
@@ -308,12 +328,6 @@ class Growth(Result):
         self.load_factor = factor
 
     def _break(self, batch: Indices) -> None:
-        if self._at_edge is not None and self._parts_an_edge(batch):
-            self.reason = (
-                "a crack has come to a free edge, and surface='extrapolated' cannot part edges: "
-                "use surface='volume' beyond"
-            )
-            return
         self.ledger.broken(batch, self.load_factor)
         self._remove(batch, dropped=False)
         self._drop(self.body.slack())
@@ -340,9 +354,9 @@ class Growth(Result):
 
     def _remove(self, bonds: Indices, dropped: bool) -> None:
         step = len(self.solves)
-        self.log += [(int(b), step, self.load_factor, dropped) for b in bonds]
-        self.bonds.remove(bonds)
-        self.body.break_bonds(*self.bonds.ends(bonds))
+        self.bonds.broken.add(bonds, step, self.load_factor, dropped)
+        self.body.follow()
+        self.ledger.parted(self.load_factor)
 
     def _drop(self, particles: Indices) -> None:
         """Set aside particles that cannot carry load, and others that this leaves slack."""
@@ -370,17 +384,6 @@ class Growth(Result):
             settled=float(self.resting),
             **{name: float(monitor(self)) for name, monitor in self._monitors.items()},
         )
-
-
-def _edge_particles(start: Discretisation) -> Mask | None:
-    """Particles within a cell of an edge of the region (not of a crack's face), or None."""
-    ended = start.bonds.ended
-    if ended is None:
-        return None
-    found = np.zeros(start.lattice.count, dtype=bool)
-    near = (ended.outline.face[ended.edge] == 0) & (ended.length < start.family.spacing)
-    found[ended.particle[near]] = True
-    return found
 
 
 def _batch_size(batch: int | None, offsets: NDArray[np.int64]) -> int:

@@ -10,6 +10,9 @@ from ..arrays import Array, Indices
 from .breaking import Breakable
 from .damaged_body import Equilibrium, Step
 
+# Share of the sound body's energy at unit load that is the solver's noise: one bond holds 1e-6.
+_PARTED = 1e-10
+
 
 class Ledger:
     """Energies of a body whose bonds break, J per unit thickness.
@@ -27,11 +30,16 @@ class Ledger:
     def __init__(self, body: Equilibrium, bonds: Breakable) -> None:
         self.body, self.bonds = body, bonds
         self.work = self.dissipated = self.excess = 0.0
-        self.deflection = 0.0
+        self.deflection = self.whole = 0.0
 
     def opened(self) -> None:
         """The first equilibrium at unit load is known."""
-        self.deflection = self._load_work()
+        self.deflection, self.whole = self._load_work(), self._stored()
+
+    @property
+    def unloaded(self) -> bool:
+        """Whether the unit load strains the body no more, up to the solver's noise."""
+        return abs(self._stored()) <= _PARTED * abs(self.whole)
 
     def _load_work(self) -> float:
         """Σ f·u Δv of the loads at unit load, prescribed unknowns left out."""
@@ -67,6 +75,11 @@ class Ledger:
     def dropped(self, bonds: Indices, load_factor: float) -> None:
         """Bonds of parts that are set aside go, without cost."""
         self.excess += self._held(bonds, load_factor)
+
+    def parted(self, load_factor: float) -> None:
+        """What cracks have cut of the bonds that end at the surface, without cost."""
+        self.excess += load_factor**2 * self.body.released_by_parting
+        self.body.released_by_parting = 0.0
 
     def _held(self, bonds: Indices, load_factor: float) -> float:
         return load_factor**2 * float(self.bonds.energy_of(self.body.unknowns, bonds).sum())

@@ -38,6 +38,10 @@ class Programme:
         steps; by default it stays as it is).
     levels : sequence of float, optional
         Factors to be visited one after the other, unloading included, instead of `stop`.
+    least_force : float, optional
+        The run ends when, at rest after something broke, what is conjugate to λ
+        (`History.force`) has fallen below this share of its peak. When the body has parted, so
+        that no load strains it any more, a run always ends.
     control : {"fixed", "following"}
         ``fixed``: the load stays where it is until no bond is overloaded; what an unstable crack
         sets free beyond its toughness is excess. ``following``: the load is lowered with every
@@ -61,6 +65,7 @@ class Programme:
     overload: float | None = None
     levels: Sequence[float] | None = None
     control: Control = "fixed"
+    least_force: float | None = None
 
     def __post_init__(self) -> None:
         if not (isfinite(self.start) and self.start >= 0):
@@ -73,6 +78,10 @@ class Programme:
             raise SceneError(f"the load increment must be positive, not {self.increment}")
         if self.overload is not None and not (isfinite(self.overload) and self.overload > 0):
             raise SceneError(f"the admissible overload must be positive, not {self.overload}")
+        if self.least_force is not None and not 0 < self.least_force < 1:
+            raise SceneError(
+                f"least_force is a share of the peak between 0 and 1, not {self.least_force}"
+            )
         if self.control not in ("fixed", "following"):
             raise SceneError(f"control must be 'fixed' or 'following', not {self.control!r}")
         if self.levels is not None:

@@ -22,6 +22,7 @@ from scipy.sparse.linalg import LinearOperator
 
 from ..arrays import Array
 from ..operators import BondOperator
+from .bordered import Border, bordered_gradients
 from .krylov import Task, condensed_gradients, conjugate_gradients
 from .two_level import BlockJacobi, TwoLevel
 
@@ -73,9 +74,16 @@ def preconditioner(
 
 
 def iterate(
-    operator: BondOperator, kind: str, preconditioner: LinearOperator, task: Task
+    operator: BondOperator,
+    kind: str,
+    preconditioner: LinearOperator,
+    task: Task,
+    border: Border | None = None,
 ) -> tuple[Array, int]:
     """Solve a task; returns the solution and the number of iterations.
+
+    With a `border` the task is that of the bordered system; the preconditioner may then be a
+    `BorderedInverse`, to be used more than once.
 
     Raises
     ------
@@ -84,6 +92,8 @@ def iterate(
     """
     if not task.rhs.any():
         return np.zeros_like(task.rhs), 0
+    if border is not None:
+        return bordered_gradients(operator, kind, preconditioner, border, task)
     if kind == "indefinite":
         return condensed_gradients(operator, preconditioner, task)
     return conjugate_gradients(operator, preconditioner, task)
@@ -98,7 +108,7 @@ def name(kind: str, preconditioner: LinearOperator | None) -> str:
     return f"{on}, {levels}"
 
 
-def relative_residual(operator: BondOperator, x: Array, rhs: Array) -> float:
+def relative_residual(operator: LinearOperator, x: Array, rhs: Array) -> float:
     """|b − K x| / |b| with the operator itself, 0 for b = 0."""
     size = float(np.linalg.norm(rhs))
     return float(np.linalg.norm(rhs - operator.matvec(x))) / size if size else 0.0

@@ -12,7 +12,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import SuperLU, splu
 
-from ..arrays import Array, Indices
+from ..arrays import Array, Indices, Mask
 from ..bonds import EndedBonds
 from ..bonds.ended import SHORTEST
 from ..material import Family, Moduli
@@ -58,6 +58,7 @@ class SurfaceStiffness:
     def __init__(self, ended: EndedBonds, family: Family, moduli: Moduli) -> None:
         self.ended, self.components = ended, moduli.components
         components = self.components
+        self._relief: tuple[Array, Mask] | None = None
         self.particles, here = np.unique(ended.particle, return_inverse=True)
         ends = ended.outline.edges[ended.edge]
         self.nodes = np.unique(ends)
@@ -239,8 +240,19 @@ class SurfaceStiffness:
     def relief(self, which: Indices) -> Array:
         """Diagonal blocks of −K_ps K_ss⁻¹ K_sp of some particles (positions among `particles`).
 
-        Shape (len(which), components, components).
+        Shape (len(which), components, components). What was asked for once is kept: other bonds
+        break, these do not.
         """
+        if self._relief is None:
+            c, count = self.components, len(self.particles)
+            self._relief = np.zeros((count, c, c)), np.zeros(count, dtype=bool)
+        blocks, known = self._relief
+        wanted = which[~known[which]]
+        if len(wanted):
+            blocks[wanted], known[wanted] = self._relief_of(wanted), True
+        return blocks[which]
+
+    def _relief_of(self, which: Indices) -> Array:
         c, count = self.components, len(self.particles)
         blocks = np.zeros((len(which), c, c))
         for begin in range(0, len(which), _CHUNK):

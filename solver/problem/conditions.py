@@ -65,6 +65,12 @@ class Support:
         Prescribe it wherever it is known: a layer with free rotations gets them wrong, because
         its families are cut by the body's edge.
     temperature : value, K (or V), optional
+    rigid : bool
+        The particles move as a rigid body (`pin`); what is given is the motion of its centre.
+    centre : point, optional
+        Of a rigid body, by default the mean of its particles.
+    tied : tuple of str, optional
+        Unknowns that have one common value, as yet unknown (`equal`).
     """
 
     select: Callable[[Lattice], Mask]
@@ -73,10 +79,15 @@ class Support:
     u2: Value | None = None
     rotation: Value | None = None
     temperature: Value | None = None
+    rigid: bool = False
+    centre: Point | None = None
+    tied: tuple[str, ...] | None = None
 
     def __post_init__(self) -> None:
         if self.displacement is not None and (self.u1 is not None or self.u2 is not None):
             raise SceneError("give either displacement or u1 and u2 in a support, not both")
+        if self.constrains:
+            return
         if not (self.given - {"rotation"}) and self.rotation is None:
             raise SceneError(
                 "a support prescribes nothing: give displacement, u1, u2, rotation or temperature"
@@ -85,11 +96,51 @@ class Support:
     @property
     def given(self) -> set[str]:
         """Names of the values that are given."""
-        names = [item.name for item in fields(self) if item.name != "select"]
+        names = {item.name for item in fields(self)} - {"select", "rigid", "centre", "tied"}
         return {name for name in names if getattr(self, name) is not None}
 
+    @property
+    def constrains(self) -> bool:
+        """Whether it relates unknowns to each other instead of prescribing their values."""
+        return self.rigid or self.tied is not None
+
     @classmethod
-    def layer(cls, cells: float, **values: Value) -> Support:
+    def pin(cls, where: Where, centre: Point | None = None, **motion: Any) -> Support:
+        """Particles that move as one rigid body, such as a loading pin or the rim that it bears on.
+
+        Its displacement (or u1, u2, of the centre) and rotation are prescribed where they are
+        given, and free where they are not: a pin without a rotation turns as the body wants it
+        to. Loads on its particles act on it. `solver.reactions.reaction` reads off its force and
+        moment.
+
+        Parameters
+        ----------
+        where : Region or callable
+        centre : point, optional
+            By default the mean of the particles.
+        **motion
+            displacement, u1, u2, rotation: numbers.
+        """
+        return cls(lambda lattice: select(lattice, where), rigid=True, centre=centre, **motion)
+
+    @classmethod
+    def equal(cls, where: Where, *unknowns: str) -> Support:
+        """Particles on which some unknowns have one common value that nobody prescribes.
+
+        Such as ``Support.equal(top, "u2")``: an edge that stays straight and level under a load.
+
+        Parameters
+        ----------
+        where : Region or callable
+        *unknowns : str
+            Names as in a support: "u1", "u2", "rotation", "temperature".
+        """
+        if not unknowns:
+            raise SceneError("name what is equal: u1, u2, rotation or temperature")
+        return cls(lambda lattice: select(lattice, where), tied=unknowns)
+
+    @classmethod
+    def layer(cls, cells: float, **values: Any) -> Support:
         """Particles nearer than `cells` spacings to the body's edge.
 
         Raises
@@ -105,7 +156,7 @@ class Support:
         )
 
     @classmethod
-    def where(cls, where: Where, **values: Value) -> Support:
+    def where(cls, where: Where, **values: Any) -> Support:
         """Particles in a region, or those for which ``where(x, y)`` is true."""
         return cls(lambda lattice: select(lattice, where), **values)
 

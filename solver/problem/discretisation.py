@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from time import perf_counter
 
@@ -17,7 +17,9 @@ from ..geometry import Crack, Lattice, Outline, Quadrature, on_edges, on_particl
 from ..material import Family, Moduli, Stability, calibrated, require_admissible
 from ..operators import BondOperator
 from . import cautions, mechanisms
+from . import constraints as constraints_of
 from .conditions import evaluate
+from .constraints import Constraints
 from .description import Description
 
 
@@ -40,6 +42,8 @@ class Discretisation:
         Loads of the surface's nodes, per volume of a particle.
     seconds : float
         Wall time that building all this took.
+    constraints : Constraints, optional
+        Of rigid pins and tied unknowns; slaves are among the prescribed.
     """
 
     scene: Description
@@ -54,17 +58,41 @@ class Discretisation:
     load: Array
     nodal_load: Array | None
     seconds: float
+    constraints: Constraints | None = None
 
     @classmethod
-    def of(cls, scene: Description, sharp_tips: bool = True) -> Discretisation:
-        """Build it, cheap checks first."""
+    def of(
+        cls, scene: Description, sharp_tips: bool = True, constrained: bool = False
+    ) -> Discretisation:
+        """Build it, cheap checks first.
+
+        Parameters
+        ----------
+        scene : Description
+        sharp_tips : bool
+        constrained : bool
+            Whether the caller knows rigid pins and tied unknowns. Slaves are among the
+            `prescribed`: who does not ask for `constraints` would take them for clamped.
+
+        Raises
+        ------
+        SceneError
+            If the scene has constraints and the caller does not know them.
+        """
         begun = perf_counter()
         family = scene.family()
         moduli = calibrated(family, scene.material, scene.calibration, scene.law)
         stability = require_admissible(family, moduli)
+        if not constrained and any(support.constrains for support in scene.supports):
+            raise SceneError(
+                "rigid pins and equal unknowns (Support.pin, Support.equal) are known to statics "
+                "and fracture only: prescribe displacements instead"
+            )
         lattice = Lattice(scene.region, scene.spacing, family.reach, scene.phase)
         cracks = _moved(scene.cracks, lattice)
         prescribed, values = _supports(scene, lattice, moduli)
+        relating = [support for support in scene.supports if support.constrains]
+        constraints = constraints_of.build(relating, lattice, moduli, prescribed, values)
         load = _loads(scene, lattice, moduli)
         sharp_tips = sharp_tips and scene.broken is None
         on_edges = edge_loads(scene, lattice, sharp_tips)
@@ -83,6 +111,7 @@ class Discretisation:
                 prescribed,
                 broken is not None,
                 stability.kind != "indefinite",
+                constraints,
             )
             if not len(loose):
                 break
@@ -121,6 +150,7 @@ class Discretisation:
             load,
             nodal_load,
             seconds,
+            constraints,
         )
 
     @cached_property
@@ -171,6 +201,12 @@ class Discretisation:
             rhs[operator.identity_rows] = operator.identity_scale * given[operator.identity_rows]
         return rhs.ravel()
 
+    def moved(self, masters: Array) -> Discretisation:
+        """The same with the free masters of its constraints known: values like any others."""
+        if self.constraints is None:
+            return self
+        return replace(self, values=self.values + self.constraints.field(masters))
+
     def surface_values(self, unknowns: Array) -> Array | None:
         """Values of the surface's nodes for a field of shape (components, N), if it has nodes."""
         surface = self.operator.ended_stiffness
@@ -191,6 +227,8 @@ def _supports(scene: Description, lattice: Lattice, moduli: Moduli) -> tuple[Mas
     values = np.zeros((moduli.components, lattice.count))
     scales = moduli.scales(scene.spacing)
     for support in scene.supports:
+        if support.constrains:
+            continue
         columns = support.columns(scene.physics)
         selected = support.select(lattice)
         if not selected.any():

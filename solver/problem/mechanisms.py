@@ -26,6 +26,7 @@ from ..errors import MechanismError
 from ..linear import TwoLevel
 from ..operators import BondOperator
 from ..operators.assembled import to_csr
+from .constraints import Constraints
 from .rigid import unheld
 
 # Smallest own stiffness of a particle, relative to its largest.
@@ -96,6 +97,7 @@ def find(
     prescribed: Mask,
     damaged: bool,
     positive: bool,
+    constraints: Constraints | None = None,
 ) -> tuple[NDArray[np.int64], str]:
     """Particles that cannot carry load, and why; an empty array if all can.
 
@@ -108,8 +110,10 @@ def find(
         slack particles).
     positive : bool
         Whether the operator is (taken to be) positive; otherwise its companion is searched.
+    constraints : Constraints, optional
+        Slaves are among the prescribed.
     """
-    loose = unheld(bonds, prescribed, operator.moduli.physics)
+    loose = unheld(bonds, prescribed, operator.moduli.physics, constraints)
     if loose:
         members = np.logical_or.reduce([part for part, _ in loose])
         return np.nonzero(members & ~prescribed.all(axis=0))[0], "; ".join(

@@ -14,10 +14,12 @@ from scipy.sparse.csgraph import connected_components
 from ..arrays import Array, Mask
 from ..bonds import Bonds
 from ..material.physics import Physics
+from .constraints import Constraints
 
 # A motion counts as blocked if its square on the prescribed unknowns exceeds this share of the
 # largest one's.
 _RANK = 1e-12
+_ROUNDING = 1e-14
 
 
 def parts(bonds: Bonds) -> tuple[int, NDArray[np.int32]]:
@@ -57,7 +59,9 @@ def parts(bonds: Bonds) -> tuple[int, NDArray[np.int32]]:
     return count, labels
 
 
-def unheld(bonds: Bonds, prescribed: Mask, physics: Physics) -> list[tuple[Mask, str]]:
+def unheld(
+    bonds: Bonds, prescribed: Mask, physics: Physics, constraints: Constraints | None = None
+) -> list[tuple[Mask, str]]:
     """Parts that can move without straining a bond: rigidly, or floating at any level.
 
     Parameters
@@ -65,6 +69,8 @@ def unheld(bonds: Bonds, prescribed: Mask, physics: Physics) -> list[tuple[Mask,
     bonds : Bonds
     prescribed : ndarray of bool, shape (components, N)
     physics : Physics
+    constraints : Constraints, optional
+        Its slaves are among the prescribed; they hold what the masters cannot follow.
 
     Returns
     -------
@@ -72,15 +78,21 @@ def unheld(bonds: Bonds, prescribed: Mask, physics: Physics) -> list[tuple[Mask,
     """
     count, labels = parts(bonds)
     points = bonds.lattice.points
+    slaves = np.zeros_like(prescribed) if constraints is None else constraints.slaves
+    if constraints is not None:
+        labels = constraints.joined(labels)
     # Parts that are wholly prescribed (or already set aside) have no unknowns to be free.
-    active = ~prescribed.all(axis=0)
+    active = ~(prescribed & ~slaves).all(axis=0)
     found: list[tuple[Mask, str]] = []
     for part in np.unique(labels[active]):
         members = labels == part
         where = points[members].mean(axis=0)
         x, y = where + bonds.lattice.shift
         place = "the body" if count == 1 else f"the part about ({x:.4g}, {y:.4g})"
-        motions = free_motions(points[members] - where, prescribed[:, members], physics)
+        if constraints is None or not slaves[:, members].any():
+            motions = free_motions(points[members] - where, prescribed[:, members], physics)
+        else:
+            motions = _constrained_motions(bonds, members, prescribed, physics, constraints)
         if motions:
             size = f"{place} ({int(members.sum())} particles)"
             found.append((members, physics.unheld.format(place=size, motions=motions)))
@@ -99,8 +111,29 @@ def free_motions(positions: Array, held: Mask, physics: Physics) -> str:
     size = np.abs(positions).max(initial=0.0) or 1.0
     motions = physics.motions(positions / size)[:, : len(held)]
     motions /= np.linalg.norm(motions.reshape(len(motions), -1), axis=1)[:, None, None]
-    seen = motions[:, held]
+    return _names(motions[:, held], physics)
+
+
+def _names(seen: Array, physics: Physics) -> str:
+    """Names of the motions that leave nothing at what is held, `seen` (motions, held)."""
     squares, modes = np.linalg.eigh(np.einsum("ai,bi->ab", seen, seen))
-    free = squares <= _RANK * max(squares.max(), 1e-300)
+    # Motions have the norm 1: what projections leave of nothing is rounding.
+    free = squares <= _RANK * max(squares.max(), _ROUNDING)
     loose = np.abs(modes[:, free]).max(axis=1, initial=0.0)
     return ", ".join(n for n, s in zip(physics.motion_names, loose, strict=True) if s > 1e-3)
+
+
+def _constrained_motions(
+    bonds: Bonds, members: Mask, prescribed: Mask, physics: Physics, constraints: Constraints
+) -> str:
+    """As `free_motions`, of a part with particles whose unknowns follow from others."""
+    lattice, components = bonds.lattice, len(prescribed)
+    where = lattice.points[members].mean(axis=0)
+    motions = physics.motions(lattice.points - where)[:, :components]
+    motions = motions * physics.scales(lattice.spacing, components)[:, None]
+    motions[:, :, ~members] = 0.0
+    motions /= np.linalg.norm(motions.reshape(len(motions), -1), axis=1)[:, None, None]
+    left = constraints.held(motions)
+    free = prescribed & ~constraints.slaves
+    seen = np.where(free, motions, left)[:, prescribed]
+    return _names(seen, physics)

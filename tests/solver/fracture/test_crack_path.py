@@ -3,7 +3,17 @@
 import numpy as np
 import pytest
 
-from solver import Crack, ElasticTensor, Family, Scene, Support, disc, fracture, recovery
+from solver import (
+    Crack,
+    ElasticTensor,
+    Family,
+    Scene,
+    Support,
+    disc,
+    fracture,
+    recovery,
+    rectangle,
+)
 from solver.bonds import Bonds, damage
 from solver.fracture.crack_path import initial_tips, trace
 from solver.geometry import Lattice
@@ -117,3 +127,50 @@ def test_a_body_without_a_crack_starts_its_path_where_it_broke_first():
     assert run.path[0] == pytest.approx([10.0, 1.5], abs=1.6)
     assert run.tip[0] == pytest.approx(10.0, abs=1.5)
     assert run.tip[1] > 4
+
+
+def test_a_crack_that_begins_in_the_middle_has_two_tips():
+    x = np.arange(-7.0, 7.1, 0.5)
+    marks = np.column_stack([x, 0.02 * x**2])
+    first, second = trace(np.zeros((0, 2)), marks, 1.0, np.abs(x).astype(int))
+    assert {first.tip[0], second.tip[0]} == {-7.0, 7.0}
+    assert first.advance == pytest.approx(second.advance, rel=0.1)
+    assert abs(first.start[0]) <= 0.5
+    # Mirror-symmetric marks: not one tip in the middle between the two.
+    assert abs(first.tip[0]) == 7.0
+
+
+def test_cracks_far_from_the_scenes_have_paths_of_their_own_and_strays_none():
+    row = np.column_stack([np.arange(1.0, 6.0), np.zeros(5)])
+    marks = np.vstack([row, np.add(row, [20.0, 3.0]), [[10.0, 10.0]]])
+    steps = np.r_[np.arange(5), np.arange(5)[::-1], 9]
+    first, second = trace(ORIGIN, marks, 1.0, steps)
+    tips = {tuple(first.tip), tuple(second.tip)}
+    assert tips == {(5.0, 0.0), (21.0, 3.0)}
+    assert len(trace(ORIGIN, marks, 1.0)) == 1
+
+
+def test_a_branch_is_a_tip_of_its_own():
+    stem = np.column_stack([np.arange(1.0, 12.0), np.zeros(11)])
+    arm = np.column_stack([5.0 + np.arange(1.0, 8.0) * 0.3, np.arange(1.0, 8.0)])
+    marks = np.vstack([stem, arm])
+    paths = trace(ORIGIN, marks, 1.0, np.arange(len(marks)))
+    assert {tuple(p.tip) for p in paths} == {tuple(arm[-1]), (11.0, 0.0)}
+    assert len(trace(ORIGIN, marks, 1.0, np.arange(len(marks)), branch=9.0)) == 1
+
+
+@pytest.mark.parametrize("surface", ["volume", "extrapolated"])
+def test_a_holed_plate_has_a_crack_on_either_side(surface):
+    pull = Support.where(
+        lambda x, y: abs(y) > 10, displacement=lambda x, y: y[:, None] * [0, 1e-3], rotation=0.0
+    )
+    scene = Scene(
+        rectangle(24, 24) - disc(4), 1.0, ElasticTensor.isotropic(1.0, 0.2), m=3,
+        supports=[pull], surface=surface,
+    )  # fmt: skip
+    run = fracture.grow(scene, 1e-6, until=lambda run: run.advance > 4)
+    left, right = sorted(run.paths[:2], key=lambda path: path.tip[0])
+    np.testing.assert_allclose(left.tip, [-1, 1] * right.tip, atol=1e-9)
+    assert right.tip[0] > 8
+    assert abs(right.start[0] - 4) < 1.6
+    assert run.advance > 4
