@@ -45,7 +45,6 @@ ELSEWHERE = {
     "cmverify/report/terminal.py": "tests/cmverify/test_cli.py",
     # Commands and what they run.
     "cmverify/doctor.py": "tests/cmverify/test_cli.py",
-    "cmverify/errata.py": "tests/cmverify/test_cli.py",
     "cmverify/exchange/export.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/exchange/expressions.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/exchange/fracture_table.py": "tests/cmverify/exchange/test_scene_file.py",
