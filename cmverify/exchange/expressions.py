@@ -9,6 +9,7 @@ lies in the branch of a ``where`` that is not taken there.
 from __future__ import annotations
 
 import ast
+import sys
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -110,7 +111,7 @@ class Formula:
         if isinstance(node, ast.Constant):
             if isinstance(node.value, bool) or not isinstance(node.value, int | float):
                 raise self._not_allowed(node)
-            if not abs(node.value) <= np.finfo(float).max:
+            if not abs(node.value) <= sys.float_info.max:
                 raise FormulaError(f"{self.text!r}: a number is too large")
             return "value"
         if isinstance(node, ast.Name):

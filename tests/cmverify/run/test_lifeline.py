@@ -1,0 +1,80 @@
+"""Runs that are ended from outside: no process is left, and a line says how to go on."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from cmverify.run.lifeline import in_good_order
+
+ROOT = Path(__file__).parents[3]
+PROGRAM = """
+import sys
+from cmverify.cases import registry
+from cmverify.run import runner
+from tests.cmverify import toy_registry as toys
+
+registry.all_cases = lambda: tuple(toys.CASES.values())
+original = runner.run
+runner.run = lambda *a, **k: original(*a, registry=toys.__name__, **k)
+from cmverify.cli import main
+main()
+"""
+
+
+def started(out, tmp_path):
+    """A run of a case that finishes soon and of one that sleeps, when it has come so far."""
+    program = tmp_path / "program.py"
+    program.write_text(PROGRAM)
+    command = [sys.executable, str(program), "run", "toy", "sleeping", "--jobs", "3"]
+    process = subprocess.Popen(
+        [*command, "--out", str(out)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        text=True, start_new_session=True, env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    deadline = time.monotonic() + 60
+    while len(list(out.glob("results/toy/*/*.json"))) < 2 and time.monotonic() < deadline:
+        time.sleep(0.1)
+    children = psutil.Process(process.pid).children(recursive=True)
+    assert len(children) >= 3
+    return process, children
+
+
+@pytest.mark.skipif(not hasattr(os, "killpg"), reason="needs POSIX signals")
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGINT", "SIGKILL"])
+def test_a_run_that_is_ended_leaves_no_process_and_can_be_reported(tmp_path, name):
+    out = tmp_path / "out"
+    process, children = started(out, tmp_path)
+    if name == "SIGINT":  # as a terminal does
+        os.killpg(process.pid, signal.SIGINT)
+    else:
+        process.send_signal(getattr(signal, name))
+    # The pipe closes only when the last process that holds it has ended.
+    said, _ = process.communicate(timeout=30)
+    _, left = psutil.wait_procs(children, timeout=20)
+    assert not left
+    assert "Traceback" not in said
+    if name != "SIGKILL":
+        assert process.returncode == 3, said
+        assert "2 of 4 measurements are finished and kept; go on with: cmverify run toy" in said
+        assert "--resume" in said
+    again = subprocess.run(
+        [sys.executable, str(tmp_path / "program.py"), "report", "--out", str(out)],
+        capture_output=True, text=True, check=False, env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    assert again.returncode == 1, again.stderr
+    assert "2 measurements are missing: sleeping" in " ".join(again.stdout.split())
+    assert json.loads((out / "results.json").read_text())["passed"] is False
+    assert "2 measurements are missing" in (out / "index.html").read_text(encoding="utf-8")
+
+
+def test_handlers_are_put_back():
+    before = signal.getsignal(signal.SIGTERM)
+    with pytest.raises(KeyboardInterrupt), in_good_order():
+        signal.raise_signal(signal.SIGTERM)
+    assert signal.getsignal(signal.SIGTERM) is before
