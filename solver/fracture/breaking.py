@@ -157,7 +157,7 @@ class Breakable:
         zone = np.zeros(self.lattice.count, dtype=bool)
         for where in no_fail:
             zone |= select(self.lattice, where)
-        held: Mask = np.logical_and.reduce(discretisation.prescribed[:2], axis=0)
+        held = discretisation.held
         rows, columns = self.lattice.rows_columns
         kept = np.zeros(self.whole.shape, dtype=bool)
         for o, (dx, dy) in enumerate(self.family.offsets[: len(kept)]):

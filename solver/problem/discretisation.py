@@ -97,10 +97,7 @@ class Discretisation:
         sharp_tips = sharp_tips and scene.broken is None
         on_edges = edge_loads(scene, lattice, sharp_tips)
         broken = scene.broken(lattice, family) if scene.broken else None
-        # Who is held is a matter of displacement (or temperature) alone: whether its particles may
-        # turn or not, a clamp is no free surface.
-        turning = scene.physics.turning[: len(prescribed)]
-        held = np.logical_and.reduce(prescribed[~np.array(turning)], axis=0)
+        held = _held(scene, prescribed)
         aside = np.zeros(lattice.count, dtype=bool)
         while True:
             bonds = Bonds(lattice.centred, family, cracks, scene.surface, held, broken, sharp_tips)
@@ -152,6 +149,11 @@ class Discretisation:
             seconds,
             constraints,
         )
+
+    @property
+    def held(self) -> Mask:
+        """Particles whose place (or temperature) is prescribed, or which were set aside, (N,)."""
+        return _held(self.scene, self.prescribed)
 
     @cached_property
     def volumes(self) -> Array:
@@ -259,6 +261,15 @@ def _loads(scene: Description, lattice: Lattice, moduli: Moduli) -> Array:
                 raise SceneError(f"a body {item.kind} {physics.missing[unknown]}")
             load[unknown, mask] += density[:, column] / scales[unknown]
     return load
+
+
+def _held(scene: Description, prescribed: Mask) -> Mask:
+    """Particles that are held, shape (N,): a matter of displacement (or temperature) alone.
+
+    Whether its particles may turn or not, a clamp is no free surface.
+    """
+    turning = np.array(scene.physics.turning[: len(prescribed)])
+    return np.asarray(prescribed[~turning].all(axis=0))
 
 
 def _moved(cracks: Sequence[Crack], lattice: Lattice) -> list[Crack]:

@@ -353,8 +353,7 @@ def test_bonds_that_break_later_are_bonds_that_were_broken(seed, surface):
         chosen = rng.permutation(np.flatnonzero(exists & ~broken))[:5]
         broken.ravel()[chosen] = True
         bonds = bonds.breaking(*np.divmod(chosen, lattice.count))
-    held = parts.prescribed.all(axis=0)
-    anew = Bonds(lattice, family, parts.scene.cracks, surface, held, broken)
+    anew = Bonds(lattice, family, parts.scene.cracks, surface, parts.held, broken)
     np.testing.assert_array_equal(bonds.special, anew.special)
     np.testing.assert_array_equal(bonds.strengths, anew.strengths)
     np.testing.assert_array_equal(bonds.column, anew.column)
