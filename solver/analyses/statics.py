@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..errors import ConvergenceError
 from ..linear import Bordered, Task, method
 from ..problem import Description, Discretisation
-from ..problem.constraints import border as border_of
+from ..problem.bordering import border as border_of
 from ..solution import Solution, Statistics
 from .registry import Analysis
 

@@ -22,7 +22,7 @@ from ..errors import ConvergenceError, MechanismError
 from ..linear import Border, Bordered, BorderedInverse, Task, TwoLevel, method
 from ..operators import BondOperator
 from ..problem import Discretisation, mechanisms
-from ..problem.constraints import border
+from ..problem.bordering import border
 from ..problem.rigid import unheld
 from ..solution import Solution, Statistics
 from .breaking import Breakable

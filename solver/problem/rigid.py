@@ -6,8 +6,6 @@ translations and a rotation; in conduction one constant) blocked by prescribed u
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage, sparse
@@ -16,9 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from ..arrays import Array, Mask
 from ..bonds import Bonds
 from ..material.physics import Physics
-
-if TYPE_CHECKING:
-    from .constraints import Constraints
+from .constraints import Constraints
 
 # A motion counts as blocked if its square on the prescribed unknowns exceeds this share of the
 # largest one's.

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solver import ElasticTensor, Load, Scene, SceneError, Support, rectangle, recovery
+from solver import ElasticTensor, Load, Scene, SceneError, Support, recovery, rectangle
 from solver.reactions import reaction
 
 
