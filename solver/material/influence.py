@@ -40,16 +40,6 @@ class Influence:
         """∫₀¹ ρ^power Λ(ρ) dρ."""
         return float(quad(lambda r: r**power * float(self(np.array(r))), 0.0, 1.0)[0])
 
-    @property
-    def xi_elastic(self) -> float:
-        """Ξ of Eq. 56."""
-        return np.pi / 128 * self.moment(2)
-
-    @property
-    def xi_conductive(self) -> float:
-        """Ξ_T of Eq. 146."""
-        return np.pi / 16 * self.moment(1)
-
 
 CONSTANT = Influence("constant", lambda r: np.ones_like(r))
 CONICAL = Influence("conical", lambda r: 1.0 - r)

@@ -11,14 +11,14 @@ from solver.material.influence import CONICAL, GAUSSIAN, influence
 @pytest.mark.parametrize(
     ("function", "elastic", "conductive"),
     [
-        # Ξ = (π/128) ∫ρ²Λ and Ξ_T = (π/16) ∫ρΛ: Eqs. 57 and 147; 1/3 − 1/4 and 1/2 − 1/3.
-        (CONSTANT, np.pi / 384, np.pi / 32),
-        (CONICAL, np.pi / 1536, np.pi / 96),
+        # ∫ρ²Λ of Eq. 56 and ∫ρΛ of Eq. 146: Eqs. 57 and 147; 1/3 − 1/4 and 1/2 − 1/3.
+        (CONSTANT, 1 / 3, 1 / 2),
+        (CONICAL, 1 / 12, 1 / 6),
     ],
 )
 def test_constants_in_closed_form(function, elastic, conductive):
-    assert function.xi_elastic == pytest.approx(elastic, rel=1e-13)
-    assert function.xi_conductive == pytest.approx(conductive, rel=1e-13)
+    assert function.moment(2) == pytest.approx(elastic, rel=1e-13)
+    assert function.moment(1) == pytest.approx(conductive, rel=1e-13)
 
 
 def test_gaussian_moment():
@@ -28,7 +28,7 @@ def test_gaussian_moment():
 
 def test_any_function_will_do_and_is_clipped_at_zero():
     parabola = Influence("parabola", lambda r: 1 - r * r)
-    assert parabola.xi_elastic == pytest.approx(np.pi / 128 * (1 / 3 - 1 / 5))
+    assert parabola.moment(2) == pytest.approx(1 / 3 - 1 / 5)
     np.testing.assert_array_equal(parabola(np.array([0.0, 1.0, 1.1])), [1.0, 0.0, 0.0])
     assert influence(parabola) is parabola
 
