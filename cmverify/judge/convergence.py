@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 
 def observed_orders(h: ArrayLike, errors: ArrayLike) -> np.ndarray:
@@ -102,6 +101,8 @@ def richardson(h: ArrayLike, values: ArrayLike) -> Extrapolation:
     if fine == 0.0 or coarse / fine <= 0.0:
         raise ValueError("values do not converge monotonically: no order can be observed")
     ratio = coarse / fine
+
+    from scipy.optimize import brentq  # not at the top: listing cases is to stay light
 
     def mismatch(p: float) -> float:
         return (h[0] ** p - h[1] ** p) / (h[1] ** p - h[2] ** p) - ratio

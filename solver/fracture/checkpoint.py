@@ -191,12 +191,14 @@ def check(path: str | os.PathLike[str]) -> None:
         If its folder does not exist or takes no files, or it is a folder itself.
     """
     target = Path(path)
-    if target.is_dir() or not target.name:
-        raise SceneError(f"the checkpoint {path} is a folder, not a file")
-    if not target.parent.is_dir():
-        raise SceneError(f"the checkpoint {path} lies in a folder that does not exist")
+    if not target.name:
+        raise SceneError(f"the checkpoint {path} names no file")
     partial = _partial(target)
     try:
+        if target.is_dir():
+            raise SceneError(f"the checkpoint {path} is a folder, not a file")
+        if not target.parent.is_dir():
+            raise SceneError(f"the checkpoint {path} lies in a folder that does not exist")
         partial.touch()
     except OSError as error:
         raise SceneError(f"the checkpoint {path} cannot be written: {error.strerror}") from error

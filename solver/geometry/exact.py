@@ -13,10 +13,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numba as nb
 import numpy as np
 
 from ..arrays import Array
+from ..compiled import kernel
 from ..errors import SceneError
 from .lattice import Lattice
 
@@ -29,7 +29,7 @@ _SPLIT = 2.0**27 + 1.0
 # Share of the two products below which their difference may be all rounding.
 _DOUBT = 2.0**-50
 
-_OPTIONS: Any = {"cache": True, "nogil": True}
+_OPTIONS: Any = {"nogil": True}
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +72,7 @@ class Frame:
         return np.asarray(self.origin + units / CELL * self.spacing)
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def _rest(a: float, b: float, product: float) -> float:
     """a b less its rounded product, exactly (Dekker)."""
     c = _SPLIT * a
@@ -84,7 +84,7 @@ def _rest(a: float, b: float, product: float) -> float:
     return low_a * low_b - (((product - high_a * high_b) - low_a * high_b) - high_a * low_b)
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def sign_of_cross(ax: float, ay: float, bx: float, by: float) -> int:
     """Sign of ax by − ay bx for whole numbers below 2⁵⁰, exact."""
     one, other = ax * by, ay * bx
@@ -97,7 +97,7 @@ def sign_of_cross(ax: float, ay: float, bx: float, by: float) -> int:
     return -1 if difference < 0.0 else 0
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def side(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> int:
     """1 if p lies to the left of the line from a to b, −1 to its right, 0 on it."""
     return sign_of_cross(bx - ax, by - ay, px - ax, py - ay)

@@ -20,16 +20,17 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-import numba as nb
 import numpy as np
 import shapely
 
 from ..arrays import Array, Indices, Mask
+from ..compiled import kernel
+from . import exact
 from .exact import CELL, Frame, side, sign_of_cross
 from .lattice import Lattice
 from .rings import rings
 
-_OPTIONS: Any = {"cache": True, "nogil": True}
+_OPTIONS: Any = {"uses": (exact.__file__,), "nogil": True}
 # How far within an edge particles are asked that lie beyond it, in units.
 _WITHIN = 4.0
 
@@ -186,7 +187,7 @@ def near_segments(lattice: Lattice, ends: Array, reach: float) -> Indices:
     return np.asarray(np.nonzero(grid[lattice.rows_columns])[0], dtype=np.int64)
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def _span(
     ax: float, ay: float, bx: float, by: float, low: float, high: float
 ) -> tuple[float, float]:
@@ -201,7 +202,7 @@ def _span(
     return min(x, z), max(x, z)
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def _mark_near(grid: Mask, ends: Array, reach: float) -> None:
     rows, columns = grid.shape
     for e in range(len(ends)):
@@ -216,7 +217,7 @@ def _mark_near(grid: Mask, ends: Array, reach: float) -> None:
                 grid[j, i] = True
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def _turns_left(ax: Array, ay: Array, bx: Array, by: Array, cx: Array, cy: Array) -> bool:
     left = True
     for k in range(len(ax)):
@@ -224,7 +225,7 @@ def _turns_left(ax: Array, ay: Array, bx: Array, by: Array, cx: Array, cy: Array
     return left
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def _some_beyond(ends: Array, one: Indices, other: Indices) -> Mask:
     """Whether each of two edges has an end strictly on the other's outer side."""
     found = np.zeros(len(one), dtype=np.bool_)
@@ -241,7 +242,7 @@ def _some_beyond(ends: Array, one: Indices, other: Indices) -> Mask:
     return found
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def _outwards(
     ux: float, uy: float, vx: float, vy: float, wx: float, wy: float, dx: float, dy: float
 ) -> bool:
@@ -253,7 +254,7 @@ def _outwards(
     return not (left_in or left_out)
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def _passes_out(
     px: float,
     py: float,
@@ -295,7 +296,7 @@ def _passes_out(
     return False
 
 
-@nb.njit(**_OPTIONS)
+@kernel(**_OPTIONS)
 def _mark_leaving(
     found: Mask,
     points: Array,

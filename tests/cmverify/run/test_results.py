@@ -1,6 +1,9 @@
 """Records survive a round trip; broken files are refused by name."""
 
+import importlib.util
+import json
 import math
+import random
 
 import numpy as np
 import pytest
@@ -70,3 +73,49 @@ def test_fields_are_written_for_other_programs(tmp_path):
     np.testing.assert_allclose(mesh.point_data["f_difference"], fields.items["f"].difference)
     with np.load(npz) as arrays:
         assert {"points", "f", "f_reference", "f_difference"} <= set(arrays.files)
+
+
+@pytest.mark.parametrize("suffix", [".json", ".npz"])
+def test_damaged_records_are_refused_by_name(tmp_path, suffix):
+    path = results.save(record(trapezium(10)), tmp_path)
+    file = path.with_suffix(suffix)
+    good, chance = file.read_bytes(), random.Random(1)
+    for kind in range(150):
+        bad = bytearray(good)
+        at = chance.randrange(len(bad))
+        if kind % 3 == 0:
+            bad = bad[:at]
+        elif kind % 3 == 1:
+            bad[at] ^= 1 << chance.randrange(8)
+        else:
+            bad[at : at + 20] = chance.randbytes(20)
+        file.write_bytes(bad)
+        with pytest.raises(ValueError, match="is not a usable result record") as caught:
+            results.load(path)
+        assert "\n" not in str(caught.value)
+
+
+def test_a_figure_that_was_edited_is_seen(tmp_path):
+    path = results.save(record(trapezium(10)), tmp_path)
+    data = json.loads(path.read_text())
+    data["measurement"]["quantities"]["integral"] = 0.0
+    path.write_text(json.dumps(data))
+    with pytest.raises(ValueError, match="it was altered"):
+        results.load(path)
+
+
+def test_the_fingerprint_covers_stored_references(tmp_path, monkeypatch):
+    package = tmp_path / "references"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    spec = importlib.util.spec_from_file_location(
+        "references", package / "__init__.py", submodule_search_locations=[str(package)]
+    )
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: spec)
+    found = set()
+    for content in (b"1", b"2", b"3"):
+        (package / "numbers.npz").write_bytes(content)
+        results.source_fingerprint.cache_clear()
+        found.add(results.source_fingerprint())
+    results.source_fingerprint.cache_clear()
+    assert len(found) == 3
