@@ -158,7 +158,8 @@ def _selector(
         points = first[edge] + position[:, None] * along[edge] + shift
         if isinstance(where, Region):
             return where.contains(*points.T)
-        found = np.asarray(where(*points.T))
+        with np.errstate(all="ignore"):
+            found = np.asarray(where(*points.T))
         if found.dtype != bool or found.shape != position.shape:
             raise SceneError("a selection must return one boolean a point")
         return found

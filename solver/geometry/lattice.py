@@ -225,7 +225,8 @@ def select(lattice: Lattice, where: Where) -> Mask:
         )
         return there.contains(*near.points.T)
     x, y = lattice.places.T
-    selected = np.asarray(where(x, y))
+    with np.errstate(all="ignore"):
+        selected = np.asarray(where(x, y))
     if selected.dtype != bool or selected.shape != x.shape:
         raise SceneError("a selection must return one boolean a particle")
     return selected

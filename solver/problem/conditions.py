@@ -28,7 +28,9 @@ def evaluate(value: Value, points: Array, components: int, what: str) -> Array:
     SceneError
         If the shape does not fit or a value is not finite.
     """
-    raw = value(points[:, 0], points[:, 1]) if callable(value) else value
+    # What a function says where it is not defined is judged here, by name.
+    with np.errstate(all="ignore"):
+        raw = value(points[:, 0], points[:, 1]) if callable(value) else value
     try:
         array = np.asarray(raw, dtype=np.float64)
         if components == 1:

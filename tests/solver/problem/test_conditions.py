@@ -143,6 +143,17 @@ def test_values_that_do_not_fit(value, components, message):
         evaluate(value, points, components, "a thing")
 
 
+@pytest.mark.filterwarnings("error")
+def test_functions_may_be_undefined_where_nobody_asks():
+    points = np.array([[-1.0, 0.0], [4.0, 0.0]])
+    found = evaluate(lambda x, y: np.where(x > 0, np.sqrt(x) / x, 0.0), points, 1, "a thing")
+    np.testing.assert_array_equal(found, [[0.0], [0.5]])
+    with pytest.raises(SceneError, match=r"a thing is not finite at x = \(-1, 0\)"):
+        evaluate(lambda x, y: np.sqrt(x), points, 1, "a thing")
+    parts = wall(Support.where(lambda x, y: np.log(x) > -1.2, temperature=1.0))
+    assert parts.lattice.points[parts.prescribed[0], 0].min() > 0.3
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [
