@@ -59,6 +59,18 @@ def elastic_part(values: NDArray[np.float64], rigid: int) -> NDArray[np.float64]
     return np.asarray(np.sqrt(values[rigid:]))
 
 
+def elastic_pairs(
+    stiffness: csr_matrix, mass: csr_matrix, count: int, rigid: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """As :func:`elastic_frequencies`, with the mass-normalised vectors, shape (n, count).
+
+    By the sparse solver: for more unknowns than modes.
+    """
+    scale = stiffness.diagonal().sum() / mass.diagonal().sum()
+    values, vectors = smallest_eigenpairs(stiffness, mass, count + rigid, -_SHIFT * scale)
+    return elastic_part(values, rigid), vectors[:, rigid:]
+
+
 def elastic_frequencies(
     stiffness: csr_matrix,
     mass: csr_matrix,

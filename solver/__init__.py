@@ -4,6 +4,7 @@ Scene -> Lattice + Family -> Moduli + Bonds -> Operator -> statics -> Solution -
 """
 
 from . import fracture, recovery
+from .analyses import modes
 from .errors import (
     CalibrationError,
     ConvergenceError,
@@ -57,6 +58,7 @@ __all__ = [
     "UniformShear",
     "disc",
     "fracture",
+    "modes",
     "polygon",
     "recovery",
     "rectangle",

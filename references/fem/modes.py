@@ -1,6 +1,6 @@
 """In-plane natural frequencies of a homogeneous rectangle by quadratic finite elements."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import skfem
@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from references.analytic.voigt import checked_voigt
 from references.eigen import elastic_part, smallest_eigenpairs
 from references.fem.elasticity import component_dofs, elastic_forms
-from references.fem.evaluation import check_order
+from references.fem.evaluation import Field, check_order
 from references.fem.mesh import Mesh, rectangle
 from references.fem.restraint import rigid_motions
 
@@ -32,6 +32,13 @@ class Modes:
     nodes: NDArray[np.float64]
     shapes: NDArray[np.float64]
     unknowns: int
+    _field: Field | None = field(default=None, repr=False)
+
+    def at(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Shapes (count, n, 2) at points (n, 2)."""
+        if self._field is None:
+            raise ValueError("these modes know no mesh")
+        return np.moveaxis(self._field.at(points).reshape(-1, len(self.shapes), 2), 0, 1)
 
 
 def in_plane_modes(
@@ -100,11 +107,15 @@ def in_plane_modes(
     frequencies = elastic_part(values, rigid)
     full = np.zeros((basis.N, count))
     full[free] = vectors[:, rigid:]
+    shapes = np.moveaxis(full[dofs], -1, 0)
+    values = np.moveaxis(shapes, 0, 1).reshape(len(nodes), -1)
+    elements = owner[basis.element_dofs[::2]]
     return Modes(
         frequencies=frequencies,
         nodes=nodes,
-        shapes=np.moveaxis(full[dofs], -1, 0),
+        shapes=shapes,
         unknowns=int(free.sum()),
+        _field=Field(mesh, order, nodes, values, elements, basis.mesh.t.T),
     )
 
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_matrix, csr_matrix, diags
 
 from references.analytic.tetrachiral import cell_geometry, interface_stiffness
-from references.eigen import RIGID_MOTIONS, elastic_frequencies
+from references.eigen import RIGID_MOTIONS, elastic_frequencies, elastic_pairs
 
 
 @dataclass(frozen=True)
@@ -229,3 +229,31 @@ class BlockLattice:
             stiffness, inertia = stiffness[free][:, free], inertia[free][:, free]
             rigid = 0
         return elastic_frequencies(stiffness, inertia, count, rigid, **solver)  # type: ignore[arg-type]
+
+    def modes(
+        self, count: int, held: NDArray[np.bool_] | None = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Lowest elastic frequencies (count,), rad/s, and displacements of the centroids.
+
+        Parameters
+        ----------
+        count : int
+        held : (blocks,) bool array, optional
+
+        Returns
+        -------
+        frequencies : (count,) float array
+        shapes : (count, blocks, 2) float array
+            Mass-normalised with the blocks' turning; zero where held.
+        """
+        free = np.ones(3 * self.columns * self.rows, dtype=bool)
+        if held is not None:
+            free = np.repeat(~np.asarray(held, dtype=bool), 3)
+        stiffness, inertia = self.assemble(spring_interface(self.cell)), self.mass()
+        rigid = RIGID_MOTIONS if free.all() else 0
+        frequencies, vectors = elastic_pairs(
+            stiffness[free][:, free], inertia[free][:, free], count, rigid
+        )
+        full = np.zeros((len(free), count))
+        full[free] = vectors
+        return frequencies, np.moveaxis(full.reshape(-1, 3, count)[:, :2], -1, 0)

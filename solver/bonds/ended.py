@@ -148,6 +148,10 @@ class EndedBonds:
     length : ndarray, shape (k,), m
         ℓ, what is left of |ξ|.
     chords : Chords, optional
+    held : ndarray of bool, shape (components, nodes of the outline), optional
+        Components of the nodes that are prescribed, and not in equilibrium.
+    given : ndarray, shape (components, nodes of the outline), optional
+        Their values, in the units of the unknowns.
     """
 
     outline: Outline
@@ -157,6 +161,8 @@ class EndedBonds:
     position: Array
     length: Array
     chords: Chords | None = None
+    held: Mask | None = None
+    given: Array | None = None
 
     @classmethod
     def of(
@@ -205,6 +211,10 @@ class EndedBonds:
         touched = np.zeros(len(self.outline.nodes), dtype=bool)
         touched[self.outline.edges[self.edge]] = True
         return replace(self, chords=chords.touching(self.outline, touched))
+
+    def holding(self, held: Mask, given: Array) -> EndedBonds:
+        """The same bonds with some components of the outline's nodes prescribed."""
+        return replace(self, held=held, given=given)
 
     def __len__(self) -> int:
         return len(self.particle)

@@ -103,11 +103,31 @@ class SurfaceStiffness:
         skin = self._skin(family, moduli, number)
         #: K_ss.
         self.matrix: sparse.csc_array = matrix + skin(False)
+        self._hold()
         self._lu = self._factorise(number[ended.outline.edges])
         if moduli.non_negative and self._lu.U.diagonal().min(initial=1.0) < 0.0:
             # Where few bonds hold a node, what is too much of the lattice must not soften it.
             self.matrix = matrix + skin(True)
+            self._hold()
             self._lu = self._factorise(number[ended.outline.edges])
+
+    def _hold(self) -> None:
+        """Set the nodes' prescribed components apart: identity rows among the others'."""
+        ended, size = self.ended, self.components * len(self.nodes)
+        #: Prescribed components of the nodes and their values, shape (components·s,).
+        self.held: Mask = np.zeros(size, dtype=bool)
+        self.given: Array = np.zeros(size)
+        if ended.held is not None and ended.given is not None:
+            self.held = ended.held[:, self.nodes].ravel()
+            self.given = np.where(self.held, ended.given[:, self.nodes].ravel(), 0.0)
+        self._free_matrix, self._free_coupling = self.matrix, self.coupling
+        self._scale = 1.0
+        if self.held.any():
+            free = sparse.diags_array((~self.held).astype(np.float64))
+            self._scale = float(np.abs(self.matrix.diagonal()).mean())
+            identity = sparse.diags_array(self.held * self._scale)
+            self._free_matrix = sparse.csc_array(free @ self.matrix @ free + identity)
+            self._free_coupling = sparse.csr_array(free @ self.coupling)
 
     def _skin(
         self, family: Family, moduli: Moduli, number: Indices
@@ -144,7 +164,7 @@ class SurfaceStiffness:
             "options": {"SymmetricMode": True},
         }
         try:
-            factors = splu(self.matrix, **options)
+            factors = splu(self._free_matrix, **options)
             pivots = np.abs(factors.U.diagonal())
             if pivots.min() > _SINGULAR * pivots.max():
                 return factors
@@ -161,7 +181,8 @@ class SurfaceStiffness:
         blocks = sparse.block_diag([laplacian] * self.components)
         scale = _SINGULAR**0.5 * np.abs(self.matrix.diagonal()).mean()
         self.matrix = sparse.csc_array(self.matrix + scale * blocks)
-        return splu(self.matrix, **options)
+        self._hold()
+        return splu(self._free_matrix, **options)
 
     def energy(self, values: Array, nodal: Array, others: Array, other_nodal: Array) -> float:
         """Half the mutual energy of two fields, per volume of a particle.
@@ -191,23 +212,30 @@ class SurfaceStiffness:
         load : ndarray, shape (components, nodes of the outline), optional
             Forces on the nodes per volume of a particle.
         """
-        force = -(self.coupling @ values.ravel())
-        if load is not None:
-            force += load[:, self.nodes].ravel()
+        force = -(self._free_coupling @ values.ravel()) + self._force(load)
         return np.asarray(self._lu.solve(force).reshape(self.components, -1))
+
+    def _force(self, load: Array | None) -> Array:
+        """Right-hand side of the nodes for loads and prescribed values, shape (components·s,)."""
+        force = np.zeros(len(self.held)) if load is None else load[:, self.nodes].ravel()
+        if self.held.any():
+            force = force - self.matrix @ self.given
+            force[self.held] = self._scale * self.given[self.held]
+        return force
 
     def reaction(self, values: Array) -> Array:
         """−K_ps K_ss⁻¹ K_sp u: what the nodes do to the particles, both (components, p)."""
-        return (self.transposed @ self.nodal(values).ravel()).reshape(values.shape)
+        nodes = self._lu.solve(-(self._free_coupling @ values.ravel()))
+        return np.asarray((self.transposed @ nodes).reshape(values.shape))
 
     def condensed_load(self, load: Array) -> Array:
         """−K_ps K_ss⁻¹ f: loads of the particles that replace those of the nodes, on the left."""
-        nodes = self._lu.solve(load[:, self.nodes].ravel())
+        nodes = self._lu.solve(self._force(load))
         return (self.transposed @ nodes).reshape(self.components, -1)
 
     def condensed(self, basis: sparse.csr_array) -> sparse.csr_array:
         """−Bᵀ K_ps K_ss⁻¹ K_sp B for a sparse basis B of the particles' values."""
-        lowered = sparse.csc_array(self.coupling @ basis)
+        lowered = sparse.csc_array(self._free_coupling @ basis)
         used = np.unique(lowered.nonzero()[1])
         dense = lowered[:, used].toarray()
         block = -(dense.T @ self._lu.solve(dense))
@@ -258,7 +286,7 @@ class SurfaceStiffness:
         for begin in range(0, len(which), _CHUNK):
             part = which[begin : begin + _CHUNK]
             columns = (part[:, None] + count * np.arange(c)).ravel()
-            right = self.coupling[:, columns].toarray()
+            right = self._free_coupling[:, columns].toarray()
             solved = self._lu.solve(right)
             # One particle's columns at a time: only their products among themselves count.
             right, solved = (x.reshape(-1, len(part), c) for x in (right, solved))

@@ -51,15 +51,15 @@ def evaluate(value: Value, points: Array, components: int, what: str) -> Array:
 
 @dataclass(frozen=True)
 class Support:
-    """Particles on which unknowns are prescribed.
+    """Particles, or the body's very edge, on which unknowns are prescribed.
 
-    Build one with `layer` or `where`. Values are numbers, arrays (one row for each selected
+    Build one with `layer`, `where` or `edge`. Values are numbers, arrays (one row for each selected
     particle, in the lattice's order) or functions of (x, y). What is not given stays free.
 
     Attributes
     ----------
     select : callable
-        Lattice → mask over the particles.
+        Lattice → mask over the particles (none of them if the edge is held).
     displacement : value of two components, m, optional
     u1, u2 : values, m, optional
         One component alone (a roller); not together with `displacement`.
@@ -73,6 +73,9 @@ class Support:
         Of a rigid body, by default the mean of its particles.
     tied : tuple of str, optional
         Unknowns that have one common value, as yet unknown (`equal`).
+    nodes : callable, optional
+        Outline, its shift from the user's coordinates → mask over its nodes, of a support of the
+        edge.
     """
 
     select: Callable[[Lattice], Mask]
@@ -84,6 +87,7 @@ class Support:
     rigid: bool = False
     centre: Point | None = None
     tied: tuple[str, ...] | None = None
+    nodes: Callable[[Outline, Point], Mask] | None = None
 
     def __post_init__(self) -> None:
         if self.displacement is not None and (self.u1 is not None or self.u2 is not None):
@@ -98,7 +102,7 @@ class Support:
     @property
     def given(self) -> set[str]:
         """Names of the values that are given."""
-        names = {item.name for item in fields(self)} - {"select", "rigid", "centre", "tied"}
+        names = {item.name for item in fields(self)} - {"select", "rigid", "centre", "tied", "nodes"}
         return {name for name in names if getattr(self, name) is not None}
 
     @property
@@ -161,6 +165,26 @@ class Support:
     def where(cls, where: Where, **values: Any) -> Support:
         """Particles in a region, or those for which ``where(x, y)`` is true."""
         return cls(lambda lattice: select(lattice, where), **values)
+
+    @classmethod
+    def edge(cls, where: Where | None = None, **values: Any) -> Support:
+        """The surface itself: nodes of outer edges and holes, those in `where` if it is given.
+
+        The body is held exactly where it ends, which a layer of particles does only to first
+        order. Needs nodes to hold: ``surface="extrapolated"``. Faces of cracks stay free.
+        """
+
+        def nodes(outline: Outline, shift: Point) -> Mask:
+            chosen = np.zeros(len(outline.nodes), dtype=bool)
+            chosen[outline.edges[outline.face == 0]] = True
+            x, y = (outline.nodes + shift).T
+            if isinstance(where, Region):
+                chosen &= where.contains(x, y)
+            elif where is not None:
+                chosen &= np.asarray(where(x, y), dtype=bool)
+            return chosen
+
+        return cls(lambda lattice: np.zeros(lattice.count, dtype=bool), nodes=nodes, **values)
 
     def columns(self, physics: Physics) -> list[tuple[int, Value, int, int]]:
         """(unknown, value, component of it, components it has) of everything prescribed.

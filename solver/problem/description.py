@@ -63,6 +63,8 @@ class Description:
     loose : {"refuse", "drop"}
         What to do with parts and particles that nothing holds: refuse the scene, or set them
         aside (their fields are NaN, the rest is solved). A load on such a part is refused.
+    density : float, optional
+        ρ, kg/m³: statics needs none, whatever moves in time does.
 
     Raises
     ------
@@ -85,6 +87,7 @@ class Description:
     broken: Callable[[Lattice, Family], Mask] | None = None
     loose: Literal["refuse", "drop"] = "refuse"
     phase: tuple[float, float] | None = None
+    density: float | None = None
 
     def __post_init__(self) -> None:
         check_surface(self.surface)
@@ -106,6 +109,11 @@ class Description:
             value = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, Real):
                 raise SceneError(f"{name} must be a number, not {value!r}")
+        if self.density is not None:
+            given = self.density
+            real = isinstance(given, Real) and not isinstance(given, bool)
+            if not (real and 0.0 < given < float("inf")):
+                raise SceneError(f"the density must be positive (kg/m³), not {given!r}")
         for load in self.loads:
             if load.kind not in self.physics.loads:
                 raise SceneError(f"a {load.kind} does not act on {self.physics.adjective} body")
@@ -114,6 +122,18 @@ class Description:
     def physics(self) -> Physics:
         """What the scene is about, as its material says."""
         return self.material.physics
+
+    def density_for(self, what: str) -> float:
+        """ρ, kg/m³, for an analysis that needs it.
+
+        Raises
+        ------
+        SceneError
+            If the scene has none.
+        """
+        if self.density is None:
+            raise SceneError(f"{what} need the mass of the body: give the scene a density, kg/m³")
+        return float(self.density)
 
     def family(self) -> Family:
         """The family of a bulk particle."""

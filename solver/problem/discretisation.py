@@ -62,7 +62,11 @@ class Discretisation:
 
     @classmethod
     def of(
-        cls, scene: Description, sharp_tips: bool = True, constrained: bool = False
+        cls,
+        scene: Description,
+        sharp_tips: bool = True,
+        constrained: bool = False,
+        free: bool = False,
     ) -> Discretisation:
         """Build it, cheap checks first.
 
@@ -73,6 +77,8 @@ class Discretisation:
         constrained : bool
             Whether the caller knows rigid pins and tied unknowns. Slaves are among the
             `prescribed`: who does not ask for `constraints` would take them for clamped.
+        free : bool
+            Whether parts that no support holds are no fault: bodies may move in time.
 
         Raises
         ------
@@ -101,6 +107,7 @@ class Discretisation:
         aside = np.zeros(lattice.count, dtype=bool)
         while True:
             bonds = Bonds(lattice.centred, family, cracks, scene.surface, held, broken, sharp_tips)
+            _hold_edges(scene, bonds, moduli)
             operator = BondOperator(bonds, moduli, prescribed)
             loose, why = mechanisms.find(
                 bonds,
@@ -109,6 +116,7 @@ class Discretisation:
                 broken is not None,
                 stability.kind != "indefinite",
                 constraints,
+                free,
             )
             if not len(loose):
                 break
@@ -229,7 +237,7 @@ def _supports(scene: Description, lattice: Lattice, moduli: Moduli) -> tuple[Mas
     values = np.zeros((moduli.components, lattice.count))
     scales = moduli.scales(scene.spacing)
     for support in scene.supports:
-        if support.constrains:
+        if support.constrains or support.nodes is not None:
             continue
         columns = support.columns(scene.physics)
         selected = support.select(lattice)
@@ -247,6 +255,36 @@ def _supports(scene: Description, lattice: Lattice, moduli: Moduli) -> tuple[Mas
             prescribed[unknown, selected] = True
             values[unknown, selected] = scales[unknown] * evaluated[key][:, component]
     return prescribed, values
+
+
+def _hold_edges(scene: Description, bonds: Bonds, moduli: Moduli) -> None:
+    """Prescribe the nodes of the outline that supports of the edge hold, in `bonds`."""
+    supports = [s for s in scene.supports if s.nodes is not None]
+    if not supports:
+        return
+    if scene.surface != "extrapolated":
+        raise SceneError(
+            f"the body's edge has no nodes to hold with surface={scene.surface!r}: use "
+            f"surface='extrapolated', or hold a layer of particles"
+        )
+    if bonds.ended is None:
+        raise SceneError("a support of the edge holds nothing: no bond ends at the body's edge")
+    outline, shift = bonds.ended.outline, bonds.lattice.shift
+    held = np.zeros((moduli.components, len(outline.nodes)), dtype=bool)
+    given, scales = np.zeros(held.shape), moduli.scales(scene.spacing)
+    for support in supports:
+        assert support.nodes is not None
+        chosen = support.nodes(outline, shift)
+        if not chosen.any():
+            raise SceneError("a support of the edge holds no node: its region misses the edge")
+        for unknown, value, component, width in support.columns(scene.physics):
+            if unknown >= moduli.components:
+                continue
+            places = outline.nodes[chosen] + shift
+            found = evaluate(value, places, width, "a prescribed value")
+            held[unknown, chosen] = True
+            given[unknown, chosen] = scales[unknown] * found[:, component]
+    bonds.ended = bonds.ended.holding(held, given)
 
 
 def _loads(scene: Description, lattice: Lattice, moduli: Moduli) -> Array:

@@ -98,6 +98,7 @@ def find(
     damaged: bool,
     positive: bool,
     constraints: Constraints | None = None,
+    free: bool = False,
 ) -> tuple[NDArray[np.int64], str]:
     """Particles that cannot carry load, and why; an empty array if all can.
 
@@ -112,8 +113,10 @@ def find(
         Whether the operator is (taken to be) positive; otherwise its companion is searched.
     constraints : Constraints, optional
         Slaves are among the prescribed.
+    free : bool
+        Whether parts may move: then only particles are looked for that few bonds cannot fix.
     """
-    loose = unheld(bonds, prescribed, operator.moduli.physics, constraints)
+    loose = [] if free else unheld(bonds, prescribed, operator.moduli.physics, constraints)
     if loose:
         members = np.logical_or.reduce([part for part, _ in loose])
         return np.nonzero(members & ~prescribed.all(axis=0))[0], "; ".join(
@@ -122,14 +125,14 @@ def find(
     none = np.zeros(0, dtype=np.int64)
     points = bonds.lattice.places
     cut = len(bonds.special) and ((bonds.strengths == 0) & bonds.exist(bonds.special)).any()
-    slack = slack_particles(operator) if damaged or cut else none
+    slack = slack_particles(operator) if damaged or cut or free else none
     if len(slack):
         x, y = points[slack[0]]
         return slack, (
             f"{len(slack)} particle(s), the first at ({x:.4g}, {y:.4g}), have too few bonds left "
             f"to be held by them"
         )
-    if damaged and len(operator.active):
+    if damaged and not free and len(operator.active):
         hinged = zero_energy_particles(operator if positive else operator.companion())
         if len(hinged):
             x, y = points[hinged].mean(axis=0)

@@ -78,6 +78,7 @@ def unheld(
     """
     count, labels = parts(bonds)
     points = bonds.lattice.points
+    nodes, at = _held_nodes(bonds, labels)
     slaves = np.zeros_like(prescribed) if constraints is None else constraints.slaves
     if constraints is not None:
         labels = constraints.joined(labels)
@@ -90,13 +91,78 @@ def unheld(
         x, y = where + bonds.lattice.shift
         place = "the body" if count == 1 else f"the part about ({x:.4g}, {y:.4g})"
         if constraints is None or not slaves[:, members].any():
-            motions = free_motions(points[members] - where, prescribed[:, members], physics)
+            positions, held = points[members] - where, prescribed[:, members]
+            if (at == part).any():
+                there = _outline_nodes(bonds)[at == part] - where
+                positions = np.concatenate([positions, there])
+                held = np.concatenate([held, nodes[:, at == part]], axis=1)
+            motions = free_motions(positions, held, physics)
         else:
             motions = _constrained_motions(bonds, members, prescribed, physics, constraints)
         if motions:
             size = f"{place} ({int(members.sum())} particles)"
             found.append((members, physics.unheld.format(place=size, motions=motions)))
     return found
+
+
+def _outline_nodes(bonds: Bonds) -> Array:
+    """Nodes of the outline at which bonds end, shape (n, 2), m; none without such bonds."""
+    return np.zeros((0, 2)) if bonds.ended is None else bonds.ended.outline.nodes
+
+
+def _held_nodes(bonds: Bonds, labels: NDArray[np.int32]) -> tuple[Mask, NDArray[np.int64]]:
+    """Prescribed components of the outline's nodes, (components, n), and each node's part.
+
+    Nodes that no bond ends at belong to no part, −1.
+    """
+    ended = bonds.ended
+    if ended is None or ended.held is None:
+        return np.zeros((1, 0), dtype=bool), np.zeros(0, dtype=np.int64)
+    at = np.full(len(ended.outline.nodes), -1, dtype=np.int64)
+    for end in ended.outline.edges[ended.edge].T:
+        at[end] = labels[ended.particle]
+    return ended.held, at
+
+
+def rigid_motions(bonds: Bonds, prescribed: Mask, physics: Physics) -> Array:
+    """Motions without strain that no support blocks, of every part.
+
+    Parameters
+    ----------
+    bonds : Bonds
+    prescribed : ndarray of bool, shape (components, N)
+    physics : Physics
+
+    Returns
+    -------
+    ndarray, shape (r, components, N)
+        Of size one (rotations times the spacing), zero where prescribed.
+    """
+    count, labels = parts(bonds)
+    lattice, components = bonds.lattice, len(prescribed)
+    nodes, at = _held_nodes(bonds, labels)
+    found = []
+    for part in range(count):
+        members = labels == part
+        if prescribed[:, members].all():
+            continue
+        centre = lattice.points[members].mean(axis=0)
+        positions = lattice.points[members] - centre
+        size = np.abs(positions).max(initial=0.0) or lattice.spacing
+        scales = physics.scales(lattice.spacing / size, components)[:, None]
+        own = physics.motions(positions / size)[:, :components] * scales
+        seen = own[:, prescribed[:, members]]
+        if (at == part).any():
+            places = (_outline_nodes(bonds)[at == part] - centre) / size
+            there = physics.motions(places)[:, :components] * scales
+            seen = np.concatenate([seen, there[:, nodes[:, at == part]]], axis=1)
+        squares, mixes = np.linalg.eigh(np.einsum("ai,bi->ab", seen, seen))
+        for mix in mixes[:, squares <= _RANK * max(squares.max(), len(positions))].T:
+            motion = np.zeros((components, lattice.count))
+            motion[:, members] = np.einsum("a,aci->ci", mix, own)
+            motion[prescribed] = 0.0
+            found.append(motion)
+    return np.array(found).reshape(-1, components, lattice.count)
 
 
 def free_motions(positions: Array, held: Mask, physics: Physics) -> str:

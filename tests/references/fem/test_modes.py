@@ -141,3 +141,10 @@ def test_bad_input_is_refused() -> None:
         in_plane_modes(cut, ANISOTROPIC, 1.0, 3, ("left",))
     with pytest.raises(ValueError, match="at least one mode"):
         in_plane_frequencies(ANISOTROPIC, 1, 1, 1.0, 0)
+
+
+def test_shapes_at_points_are_those_at_the_nodes() -> None:
+    modes = in_plane_modes(rectangle(1.0, 1.0, 0.2), ANISOTROPIC, 1.0, 4)
+    inside = np.abs(modes.nodes).max(axis=1) < 0.499
+    there = modes.at(modes.nodes[inside])
+    assert there == pytest.approx(modes.shapes[:, inside], abs=1e-9)

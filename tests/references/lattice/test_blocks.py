@@ -137,3 +137,17 @@ def test_bad_input_is_refused() -> None:
         BlockLattice(CELL, 1, 1)
     with pytest.raises(ValueError, match="elastic modes"):
         BlockLattice(CELL, 2, 1).frequencies(4)
+
+
+@pytest.mark.parametrize("clamped", [False, True])
+def test_shapes_have_the_frequencies_that_are_told(clamped: bool) -> None:
+    """Rayleigh's quotient needs the turning too: here the masses of the shapes, and their order."""
+    lattice = BlockLattice(CELL, 9, 9)
+    held = lattice.ring if clamped else None
+    found, shapes = lattice.modes(6, held)
+    assert found == pytest.approx(lattice.frequencies(6, held), rel=1e-9)
+    gram = CELL.density * CELL.side**2 * np.einsum("knd,lnd->kl", shapes, shapes)
+    # The blocks' turning carries a little of the mass.
+    assert 0.95 < np.diag(gram).min() <= np.diag(gram).max() <= 1 + 1e-12
+    if clamped:
+        assert not shapes[:, lattice.ring].any()

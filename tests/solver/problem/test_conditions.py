@@ -527,3 +527,53 @@ def test_a_disc_and_a_function_cut_edges_where_they_end(radius, angle, surface):
         parts = Scene(body, 0.1, SOLID, held, [load], m=2, surface=surface).discretise()
         assert resultant(parts, 0) == pytest.approx(2 * half * c, abs=1e-8)
         assert resultant(parts, 1) == pytest.approx(2 * half * s, abs=1e-8)
+
+
+def test_a_held_edge_conducts_a_linear_temperature_to_rounding():
+    """Bonds that end at nodes of the right temperature leave every particle in balance."""
+
+    def exact(x, y):
+        return 1 + 2 * x - 3 * y
+
+    solution = Scene(
+        region=SQUARE - disc(0.2),
+        spacing=0.041,
+        m=3,
+        surface="extrapolated",
+        material=ConductivityTensor([[5, 2], [2, 1]]),
+        supports=[Support.edge(temperature=exact)],
+    ).solve(tolerance=1e-12)
+    # The hole's polygon lies inside its circle: some bonds are a little shorter than they look.
+    assert solution.temperature == pytest.approx(exact(*solution.points.T), abs=2e-3)
+    assert solution.surface_temperature == pytest.approx(exact(*solution.surface_points.T))
+
+
+def test_a_bar_held_at_its_edge_is_as_long_as_the_body():
+    """Pulled by 1 Pa: u1 = (x + 1/2)/E from the edge on, not from the middle of a layer."""
+    corner = Support.edge(lambda x, y: (x < -0.4999) & (y < -0.4999), u2=0.0)
+    wall = Support.edge(lambda x, y: x < -0.4999, u1=0.0)
+    pull = Load.stress((1.0, 0.0, 0.0), where=lambda x, y: x > 0.4999)
+    scene = {"region": SQUARE, "m": 3, "surface": "extrapolated", "material": SOLID}
+    errors = []
+    for n in (10, 20):
+        solution = Scene(spacing=1 / n, supports=[wall, corner], loads=[pull], **scene).solve()
+        x, y = solution.points.T
+        exact = np.column_stack([x + 0.5, -0.2 * (y + 0.5)])
+        errors.append(np.abs(solution.displacement - exact).max())
+        assert np.ptp(solution.surface_displacement[solution.surface_points[:, 0] < -0.49, 0]) == 0
+    assert errors[1] < 3e-3
+    assert errors[1] < 0.6 * errors[0]
+
+
+@pytest.mark.parametrize(
+    ("support", "surface", "words"),
+    [
+        (Support.edge(displacement=0.0), "volume", "no nodes to hold"),
+        (Support.edge(lambda x, y: x > 9, displacement=0.0), "extrapolated", "holds no node"),
+        (Support.edge(lambda x, y: x < -0.499, u1=0.0), "extrapolated", "translation along 2"),
+        (Support.edge(temperature=0.0), "extrapolated", "no temperature"),
+    ],
+)
+def test_edges_that_cannot_be_held_so(support, surface, words):
+    with pytest.raises(SceneError, match=words):
+        plate(support, surface=surface)
