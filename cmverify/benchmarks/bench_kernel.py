@@ -16,15 +16,14 @@ SCENES = ["crack tip a/120", "conduction a/120"]
 def _scene(name: str) -> Scene:
     """The two scenes of the suite at 45,244 particles, with data that cost nothing to evaluate."""
     from cmverify.cases import crack_tip, disc
-    from solver import ConductivityTensor, Cosine, Crack, ElasticTensor, Scene, Support
+    from cmverify.cases.common.scenes import cracked_disc
+    from solver import ConductivityTensor, Cosine, ElasticTensor, Scene, Support
     from solver import disc as disc_region
 
     region, spacing = disc_region(1.0), 1.0 / 120
     if name.startswith("crack"):
         held = Support.layer(cells=5.5, displacement=(0.0, 0.0), rotation=0.0)
-        tensor = ElasticTensor(crack_tip.STIFFNESS)
-        cracks = [Crack((-1.5, 0.0), (0.0, 0.0))]
-        return Scene(region, spacing, tensor, [held], m=5, cracks=cracks)
+        return cracked_disc(ElasticTensor(crack_tip.STIFFNESS), 120, held, m=5)
     held = Support.layer(cells=5.5, temperature=0.0)
     conductor = ConductivityTensor(disc.CONDUCTIVITY)
     law = Cosine(disc.EXPONENT)

@@ -28,7 +28,8 @@ from cmverify.case import (
     Method,
     OrderBand,
 )
-from cmverify.cases.common import adapters, sif
+from cmverify.cases.common import adapters, materials, sif
+from cmverify.cases.common.scenes import cracked_disc
 from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
@@ -37,13 +38,8 @@ if TYPE_CHECKING:
     from solver.material import Calibration
 
 #: C1111 = C, C2222 = 4C/5, C1122 = C/5, C1212 = C/3, C1112 = C/10, C2212 = C/6; order 11, 22, 12.
-STIFFNESS = (
-    (1.0, 1.0 / 5.0, 1.0 / 10.0),
-    (1.0 / 5.0, 4.0 / 5.0, 1.0 / 6.0),
-    (1.0 / 10.0, 1.0 / 6.0, 1.0 / 3.0),
-)
+STIFFNESS = tuple(map(tuple, (materials.TENSORS["fully anisotropic"] / 100.0).tolist()))
 HORIZON_CELLS = 5  # m
-CALIBRATIONS: tuple[Calibration, ...] = ("lattice", "positive", "continuum")
 SOURCE = "closed form of Sih, Paris and Irwin; measured with a margin, order by u ~ √r"
 INTENSITY_SOURCE = "the K prescribed; measured with half as much again"
 LADDER = {Level.QUICK: (30, 60), Level.STANDARD: (30, 60, 90), Level.PAPER: (30, 60, 120)}
@@ -111,23 +107,20 @@ def stress_ahead(
 
 def solve(problem: Problem, calibration: Calibration, surface: Surface, n: int) -> Solution:
     """The bond solution at spacing a/n."""
-    from solver import Crack, ElasticTensor, Scene, Support, disc
+    from solver import ElasticTensor, Support
 
-    return Scene(
-        region=disc(1.0),
-        spacing=1.0 / n,
+    layer = Support.layer(
+        cells=adapters.LAYER_CELLS,
+        displacement=problem.displacement,
+        rotation=problem.rotation,
+    )
+    return cracked_disc(
+        ElasticTensor(problem.voigt),
+        n,
+        layer,
         m=HORIZON_CELLS,
-        material=ElasticTensor(problem.voigt),
         calibration=calibration,
         surface=surface,
-        cracks=[Crack((-1.5, 0.0), (0.0, 0.0))],
-        supports=[
-            Support.layer(
-                cells=adapters.LAYER_CELLS,
-                displacement=problem.displacement,
-                rotation=problem.rotation,
-            )
-        ],
     ).solve(tolerance=1e-10)
 
 
@@ -311,7 +304,7 @@ def _warm_fem(order: int) -> None:
     fem(Problem(1.0, 0.0), order, False, 12)
 
 
-WARM_BOND = {c: partial(_warm_bond, c) for c in CALIBRATIONS}
+WARM_BOND = {c: partial(_warm_bond, c) for c in materials.CALIBRATIONS}
 TREATMENTS: tuple[Surface, ...] = ("none", "extrapolated")
 WARM_BESIDE = {t: partial(_warm_bond, "lattice", t) for t in TREATMENTS}
 WARM_FEM = {p: partial(_warm_fem, p) for p in (1, 2)}

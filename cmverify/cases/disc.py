@@ -28,7 +28,7 @@ from cmverify.case import (
     Method,
     OrderBand,
 )
-from cmverify.cases.common import adapters
+from cmverify.cases.common import adapters, materials
 from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 
 CONDUCTIVITY = ((5.0, 2.0), (2.0, 1.0))  # Eq. 168, W/(m K)
 EXPONENT = 34  # of the cos^n law, as in the paper
-CALIBRATIONS: tuple[Calibration, ...] = ("lattice", "positive", "continuum")
 SOURCE = "rounding: a cubic field is exact on the lattice's own sums"
 SECOND_ORDER = "second order by theory; measured with a margin"
 LADDER = {Level.QUICK: (25, 50), Level.STANDARD: (25, 50, 75), Level.PAPER: (25, 50, 100)}
@@ -171,7 +170,7 @@ def _warm_fem(order: int) -> None:
 
 
 WARM = {
-    **{f"bond/{c}": partial(_warm_bond, c) for c in CALIBRATIONS},
+    **{f"bond/{c}": partial(_warm_bond, c) for c in materials.CALIBRATIONS},
     **{f"fem/P{p}": partial(_warm_fem, p) for p in (1, 2)},
 }
 
@@ -192,7 +191,7 @@ def methods(problem: Problem) -> tuple[Method, ...]:
     """Three calibrations of the bond solver, linear and quadratic finite elements."""
     bonds = [
         Method(f"bond/{c}", "bond", partial(bond, problem, c), LADDER, WARM[f"bond/{c}"])
-        for c in CALIBRATIONS
+        for c in materials.CALIBRATIONS
     ]
     elements = [
         Method(f"fem/P{p}", "fem", partial(fem, problem, p), LADDER, WARM[f"fem/P{p}"])

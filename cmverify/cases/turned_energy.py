@@ -40,7 +40,6 @@ SOLIDS = {
 #: Engineering strains (ε11, ε22, 2 ε12) of the figure's two columns.
 STRAINS = {"extension": np.array([1.0, 0.0, 0.0]), "shear": np.array([0.0, 0.0, 1.0])}
 DEGREES = np.arange(0.0, 180.1, 5.0)
-CALIBRATIONS: tuple[Calibration, ...] = ("lattice", "positive", "continuum")
 EVERY = {
     Level.QUICK: (2, 3, 4, 5),
     Level.STANDARD: (2, 3, 4, 5, 6, 7, 8),
@@ -123,7 +122,8 @@ CASES = (
             "own sums the energy is exact at every angle and every m from 2 to 8."
         ),
         methods=tuple(
-            Method(f"bond/{c}", "bond", partial(turn, Turning(c)), EVERY) for c in CALIBRATIONS
+            Method(f"bond/{c}", "bond", partial(turn, Turning(c)), EVERY)
+            for c in materials.CALIBRATIONS
         ),
         checks=(
             Check("bond/lattice", "deviation", {2: 1e-12}, source=SOURCE, exact=True),

@@ -219,6 +219,19 @@ FAULTS = (
         ),
         "stability",
     ),
+    Fault("strains of bonds + 1 %", "solver.material.strains.elongations", scaled(1.01), "strains"),
+    Fault(
+        "rotations turn bonds the other way",
+        "solver.material.strains.elongations",
+        argument(3, times(-1.0)),
+        "strains",
+    ),
+    Fault(
+        "rotations turn bonds 1 % too far",
+        "solver.material.strains.elongations",
+        argument(3, times(1.01)),
+        "strains",
+    ),
     # ---- bonds, operators ---------------------------------------------------------------
     Fault("bond blocks + 1 %", "solver.operators.blocks.offset_blocks", scaled(1.01), "operators"),
     Fault(
@@ -317,28 +330,22 @@ FAULTS = (
         "loads",
     ),
     # ---- what is read from a solution ---------------------------------------------------
-    Fault("displacement + 1 %", "solver.solution.Solution.displacement", scaled(1.01), "solution"),
+    Fault("displacement + 1 %", "solver.state.State.displacement", scaled(1.01), "solution"),
     Fault(
         "displacement with its components swapped",
-        "solver.solution.Solution.displacement",
+        "solver.state.State.displacement",
         result(swapped()),
         "solution",
     ),
-    Fault(
-        "one displacement NaN", "solver.solution.Solution.displacement", result(one_nan), "solution"
-    ),
-    Fault("rotation + 1 %", "solver.solution.Solution.rotation", scaled(1.01), "solution"),
-    Fault(
-        "rotation of the other sign", "solver.solution.Solution.rotation", scaled(-1.0), "solution"
-    ),
-    Fault("one rotation NaN", "solver.solution.Solution.rotation", result(one_nan), "solution"),
-    Fault("temperature + 1 %", "solver.solution.Solution.temperature", scaled(1.01), "solution"),
-    Fault(
-        "one temperature NaN", "solver.solution.Solution.temperature", result(one_nan), "solution"
-    ),
+    Fault("one displacement NaN", "solver.state.State.displacement", result(one_nan), "solution"),
+    Fault("rotation + 1 %", "solver.state.State.rotation", scaled(1.01), "solution"),
+    Fault("rotation of the other sign", "solver.state.State.rotation", scaled(-1.0), "solution"),
+    Fault("one rotation NaN", "solver.state.State.rotation", result(one_nan), "solution"),
+    Fault("temperature + 1 %", "solver.state.State.temperature", scaled(1.01), "solution"),
+    Fault("one temperature NaN", "solver.state.State.temperature", result(one_nan), "solution"),
     Fault(
         "surface displacement + 1 %",
-        "solver.solution.Solution.surface_displacement",
+        "solver.state.State.surface_displacement",
         scaled(1.01),
         "solution",
     ),

@@ -14,6 +14,7 @@ from pathlib import Path
 from cmverify.faults import trial
 from cmverify.faults.fault import Fault
 from cmverify.faults.trial import Found, Pair, Sound
+from cmverify.run.lifeline import hold
 from cmverify.run.threads import thread_environment
 
 #: Methods that caught a fault when it was last searched for, cheapest first.
@@ -134,7 +135,8 @@ def _search(
 def _workers(jobs: int) -> ProcessPoolExecutor:
     """Processes started afresh, because the limits of threads are read at import."""
     os.environ.update(thread_environment(1))
-    return ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"))
+    context = multiprocessing.get_context("spawn")
+    return ProcessPoolExecutor(jobs, context, initializer=hold, initargs=(os.getpid(),))
 
 
 def read_map() -> Map:

@@ -2,45 +2,23 @@
 
 from __future__ import annotations
 
-import base64
-import io
 import math
 import multiprocessing
 import os
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from cmverify.case import Case, LinePlot, Measurement, nothing_to_compile
 from cmverify.judge import precision
+from cmverify.report.picture import Picture
 from cmverify.report.summary import CaseResult, Row, RunInfo, all_passed, table
 from cmverify.run.lifeline import hold
 from cmverify.run.results import write_text
 from cmverify.run.threads import child_environment
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-
-@dataclass(frozen=True)
-class Picture:
-    """A figure, its caption, and a text for those who cannot see it."""
-
-    name: str
-    kind: str
-    content: bytes
-    caption: str
-    alt: str
-    wide: bool = False
-
-    @property
-    def uri(self) -> str:
-        """The figure inside the page."""
-        media = {"svg": "image/svg+xml", "png": "image/png"}[self.kind]
-        return f"data:{media};base64,{base64.b64encode(self.content).decode()}"
 
 
 def build(summary: Sequence[CaseResult], info: RunInfo, folder: Path) -> Path:
@@ -114,9 +92,7 @@ def _draw(result: CaseResult, folder: Path) -> tuple[list[Picture], list[str]]:
     """Figures of a case, written as files too, and the paths of its exported fields."""
     pictures = _pictures(result, precision.points(result.case, result.outcomes))
     for picture in pictures:  # for papers and slides
-        path = folder / "figures" / f"{result.case.name}-{picture.name}.{picture.kind}"
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(picture.content)
+        picture.save(folder / "figures" / f"{result.case.name}-{picture.name}")
     return pictures, _export(result, folder)
 
 
@@ -163,20 +139,20 @@ def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture
     if ladder and any(not c.equals for c in case.checks if c.quantity == case.primary):
         quantity = case.quantities[case.primary]
         pictures.append(
-            Picture(
+            Picture.drawn(
                 "convergence",
                 "svg",
-                _render(figures.convergence_plot(case, curves, case.length), "svg"),
+                figures.convergence_plot(case, curves, case.length),
                 f"{_capital(quantity)} over spacing or element size.",
                 _spoken(curves, "error"),
             )
         )
     if ladder and case.timed:
         pictures.append(
-            Picture(
+            Picture.drawn(
                 "work-precision",
                 "svg",
-                _render(figures.work_precision_plot(case, curves, case.length), "svg"),
+                figures.work_precision_plot(case, curves, case.length),
                 "The same error over the wall time of set-up and solve; "
                 "meshing and JIT compilation are not counted.",
                 _spoken(curves, "seconds"),
@@ -197,8 +173,7 @@ def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture
         caption = f"{mathtext(item.label)}: {where}, particles that are not prescribed."
         alt = f"Maps of {key}: computed, reference and their difference; {where}."
         figure = figures.field_panels(fields, item, case.length)
-        content = _render(figure, "png")
-        pictures.append(Picture(f"field-{key}", "png", content, caption, alt, wide=True))
+        pictures.append(Picture.drawn(f"field-{key}", "png", figure, caption, alt, wide=True))
     for index, (line, series) in enumerate(figures.lines_of(featured), 1):
         title = mathtext(line.title)
         caption = f"{title}. {_capital(where)}."
@@ -208,8 +183,8 @@ def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture
             caption = f"{title}."
         alt = f"Line plot: {title}; markers computed, line {line.reference_label}."
         beside = _by_methods(result, index - 1) if line.over_methods else None
-        content = _render(figures.line_plot(line, series, case.length, beside), "svg")
-        pictures.append(Picture(f"line-{index}", "svg", content, caption, alt))
+        figure = figures.line_plot(line, series, case.length, beside)
+        pictures.append(Picture.drawn(f"line-{index}", "svg", figure, caption, alt))
     return pictures
 
 
@@ -256,13 +231,6 @@ def _export(result: CaseResult, folder: Path) -> list[str]:
     assert measurement.fields is not None
     paths = write_fields(measurement.fields, folder / "fields" / name)
     return [path.relative_to(folder).as_posix() for path in paths]
-
-
-def _render(figure: Figure, kind: str) -> bytes:
-    buffer = io.BytesIO()
-    options: dict[str, Any] = {"dpi": 130} if kind == "png" else {"metadata": {"Date": None}}
-    figure.savefig(buffer, format=kind, **options)
-    return buffer.getvalue()
 
 
 def _spoken(points: Sequence[precision.Point], what: str) -> str:

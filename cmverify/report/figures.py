@@ -40,16 +40,21 @@ def field_panels(fields: FieldSet, item: Field, length: str = "a") -> Figure:
             ("reference", item.reference, "viridis", low, high),
             ("computed − reference", item.difference, "RdBu_r", -reach, reach),
         )
-        edge = np.abs(fields.points).max() * 1.04
+        low_corner, high_corner = fields.points.min(axis=0), fields.points.max(axis=0)
+        middle = 0.5 * (low_corner + high_corner)
+        # Panels are square: the longer side of the body fills them.
+        edge = 0.52 * float((high_corner - low_corner).max())
         # Laid out by hand: the panels of all fields align, and it is several times quicker.
         for index, (title, values, cmap, bottom, top) in enumerate(panels):
             left = 0.052 + index * 0.318
             axis = figure.add_axes((left, 0.155, 0.225, 0.745))
             image = _draw(axis, fields, values, cmap, bottom, top)
             axis.set_title(title)
-            axis.set(xlim=(-edge, edge), ylim=(-edge, edge), aspect="equal")
-            axis.set_xticks([-0.5, 0.0, 0.5], ["−0.5", "0", "0.5"])
-            axis.set_yticks([-0.5, 0.0, 0.5], ["−0.5", "0", "0.5"] if index == 0 else ["", "", ""])
+            for side, centre in zip((axis.xaxis, axis.yaxis), middle, strict=True):
+                side.set_view_interval(centre - edge, centre + edge, ignore=True)
+                side.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
+            axis.set_aspect("equal")
+            axis.tick_params(labelleft=index == 0)
             axis.set_xlabel(f"$x_1/{length}$", labelpad=1)
             axis.grid(False)
             extend = _extend(values, bottom, top)

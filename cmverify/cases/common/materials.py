@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from cmverify.case import Array
+
+if TYPE_CHECKING:
+    from solver.material import Calibration
+
+#: What cases and studies compare, in the order in which figures show them.
+CALIBRATIONS: tuple[Calibration, ...] = ("lattice", "positive", "continuum")
 
 #: Stiffness in GPa where the source gives units; only ratios matter to a lattice.
 TENSORS: dict[str, Array] = {

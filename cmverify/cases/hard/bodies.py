@@ -131,7 +131,7 @@ def measure(solid: Solid, n: int) -> Measurement:
 
 
 @dataclass(frozen=True)
-class Row:
+class Expected:
     """One solid as a method, with what was measured for it at 24, 48, 96 and 160 cells.
 
     Bounds are these figures with room for half as much again.

@@ -8,7 +8,7 @@ from typing import Any, Literal
 from cmverify.case import Case, Level
 from cmverify.cases.common import materials
 from cmverify.cases.hard import bodies
-from cmverify.cases.hard.bodies import Row, Solid
+from cmverify.cases.hard.bodies import Expected, Solid
 
 SHORT = {Level.QUICK: (24,), Level.STANDARD: (24, 48), Level.PAPER: (24, 48)}
 
@@ -19,11 +19,13 @@ def _row(
     quartic: tuple[float, ...],
     iterations: tuple[int, ...],
     **others: Any,
-) -> Row:
+) -> Expected:
     central = (plane, poisson) == ("stress", 1 / 3)  # no bond resists shear: no rotations
     ratio = "1/3" if central else f"{poisson:g}"
     solid = Solid(partial(materials.isotropic, poisson, plane))
-    return Row(f"{plane} ν = {ratio}", solid, quartic, iterations, rotation=not central, **others)
+    return Expected(
+        f"{plane} ν = {ratio}", solid, quartic, iterations, rotation=not central, **others
+    )
 
 
 ROWS = (

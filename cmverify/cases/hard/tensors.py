@@ -7,7 +7,7 @@ from functools import partial
 from cmverify.case import Array, Case
 from cmverify.cases.common import materials
 from cmverify.cases.hard import bodies
-from cmverify.cases.hard.bodies import Row, Solid
+from cmverify.cases.hard.bodies import Expected, Solid
 
 
 def tensor(name: str, degrees: float = 0.0) -> Array:
@@ -21,49 +21,49 @@ def forty_to_one() -> Array:
 
 
 ROWS = (
-    Row(
+    Expected(
         "carbon/epoxy 0°",
         Solid(partial(tensor, "carbon/epoxy", 0.0), "positive"),
         (8.9e-03, 9.7e-04, 1.8e-04, 6.0e-05),
         (39, 24, 37, 44),
     ),
-    Row(
+    Expected(
         "carbon/epoxy 30°",
         Solid(partial(tensor, "carbon/epoxy", 30.0), "positive"),
         (9.3e-03, 1.1e-03, 2.1e-04, 7.1e-05),
         (34, 21, 27, 28),
     ),
-    Row(
+    Expected(
         "carbon/epoxy 45°",
         Solid(partial(tensor, "carbon/epoxy", 45.0), "positive"),
         (6.8e-03, 6.1e-04, 1.2e-04, 3.9e-05),
         (36, 21, 26, 27),
     ),
-    Row(
+    Expected(
         "40 : 1",
         Solid(forty_to_one, "positive"),
         (8.5e-03, 9.6e-04, 1.8e-04, 6.0e-05),
         (46, 32, 53, 66),
     ),
-    Row(
+    Expected(
         "silicon",
         Solid(partial(tensor, "silicon")),
         (1.6e-02, 1.4e-03, 2.5e-04, 8.1e-05),
         (26, 13, 13, 14),
     ),
-    Row(
+    Expected(
         "bone",
         Solid(partial(tensor, "bone")),
         (2.8e-03, 1.5e-04, 2.5e-05, 8.2e-06),
         (28, 14, 17, 17),
     ),
-    Row(
+    Expected(
         "fully anisotropic",
         Solid(partial(tensor, "fully anisotropic")),
         (5.3e-03, 6.2e-04, 1.2e-04, 3.9e-05),
         (28, 14, 16, 17),
     ),
-    Row(
+    Expected(
         "tetrachiral",
         Solid(materials.tetrachiral),
         (2.5e-02, 2.7e-03, 5.1e-04, 1.7e-04),

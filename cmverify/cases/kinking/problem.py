@@ -17,6 +17,7 @@ import numpy as np
 
 from cmverify.case import Array
 from cmverify.cases.common import materials
+from cmverify.cases.common.scenes import cracked_disc
 
 if TYPE_CHECKING:
     from solver import ElasticTensor
@@ -137,24 +138,19 @@ class Grown:
 
 def grow_kink(kink: Kink, reach: float = REACH) -> Grown:
     """Let the crack grow until its path leaves the circle of radius `reach` about the old tip."""
-    from solver import Crack, Programme, Scene, Support, Toughness, disc
+    from solver import Programme, Support, Toughness
     from solver.fracture import grow
     from solver.fracture.crack_path import SHORT
 
     mouth = -1.5 * kink.axes[:, 0]
-    scene = Scene(
-        region=disc(1.0),
-        spacing=1.0 / kink.n,
+    scene = cracked_disc(
+        kink.solid(),
+        kink.n,
+        Support.layer(cells=kink.m + 0.5, displacement=kink.displacement, rotation=kink.rotation),
+        (float(mouth[0]), float(mouth[1])),
         m=kink.m,
-        material=kink.solid(),
         calibration="lattice",
         surface=kink.surface,
-        cracks=[Crack((float(mouth[0]), float(mouth[1])), (0.0, 0.0))],
-        supports=[
-            Support.layer(
-                cells=kink.m + 0.5, displacement=kink.displacement, rotation=kink.rotation
-            )
-        ],
     )
     run = grow(
         scene,

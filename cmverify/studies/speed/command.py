@@ -33,13 +33,14 @@ def speed(
     """
     from rich.console import Console
 
+    from cmverify.judge.verdict import Verdict
     from cmverify.run.environment import describe
     from cmverify.studies.speed import measure, verdicts
 
     console = Console()
     resolution = _RESOLUTION[level]
     tables: dict[str, list[Any]] = {}
-    found: list[verdicts.Verdict] = []
+    found: list[Verdict] = []
     # Ratios are promised at a/120; smaller bodies are measured but not judged.
     judged = level != Level.QUICK
     studies: tuple[tuple[str, Any, Any], ...] = (
@@ -71,7 +72,7 @@ def speed(
         "machine": describe().as_dict(),
         "level": str(level),
         "tables": tables,
-        "verdicts": [vars(v) for v in found],
+        "verdicts": [v.as_dict() for v in found],
     }
     text = json.dumps(document, indent=1, ensure_ascii=False) + "\n"
     (out / "speed.json").write_text(text, encoding="utf-8")
@@ -106,5 +107,5 @@ def _verdict_table(found: list[Any]) -> Any:
         view.add_column(column, justify="right" if column == "measured" else "left")
     for v in found:
         mark = "[green]✓[/]" if v.passed else "[red]✗[/]"
-        view.add_row(mark, v.what, f"{v.measured:.3g}", v.asked)
+        view.add_row(mark, f"{v.method}: {v.quantity}", f"{v.value:.3g}", v.asked)
     return view

@@ -35,7 +35,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Row:
+class Timing:
     """One line of a comparison: what, and its measured values."""
 
     name: str
@@ -86,12 +86,12 @@ def _sparse_formats(matrix: sparse.csr_array, components: int) -> dict[str, tupl
     }
 
 
-def kernel(resolution: int = 120) -> list[Row]:
+def kernel(resolution: int = 120) -> list[Timing]:
     """Products on one thread (and on all), against SciPy's formats of the same matrix.
 
     Returns
     -------
-    list of Row
+    list of Timing
         Values: ``ms`` a product, ``bonds_per_s`` (directed), ``bytes`` that a product reads
         besides the fields, ``bytes_per_s``, ``slower`` (time over the matrix-free product's,
         one thread each), ``memory`` (bytes over the matrix-free operator's), ``error`` (largest
@@ -137,23 +137,23 @@ def kernel(resolution: int = 120) -> list[Row]:
                 "error": error,
                 "threads": threads if name == several else 1,
             }
-            rows.append(Row(f"{kind}: {name}", values))
+            rows.append(Timing(f"{kind}: {name}", values))
     return rows
 
 
-def scenes(resolution: int = 60, tolerance: float = 1e-8) -> list[Row]:
+def scenes(resolution: int = 60, tolerance: float = 1e-8) -> list[Timing]:
     """Iterations of the two-level method on bodies with holes, notches and curved cracks.
 
     Returns
     -------
-    list of Row
+    list of Timing
         Values: ``particles``, ``method``, ``iterations``, ``residual``, ``setup_s``, ``solve_s``.
     """
     rows = []
     for name, scene in static_scenes(resolution).items():
         found = scene.solve(tolerance, preconditioning="two-level").statistics
         rows.append(
-            Row(
+            Timing(
                 name,
                 {
                     "particles": found.particles,
@@ -168,12 +168,12 @@ def scenes(resolution: int = 60, tolerance: float = 1e-8) -> list[Row]:
     return rows
 
 
-def surfaces(resolution: int = 60, tolerance: float = 1e-8) -> list[Row]:
+def surfaces(resolution: int = 60, tolerance: float = 1e-8) -> list[Timing]:
     """What the treatment of surfaces costs, beside none, on bodies with and without free surfaces.
 
     Returns
     -------
-    list of Row
+    list of Timing
         Values: ``iterations``, ``setup_s`` (preconditioner included), ``product_ms``, ``bytes``
         that a product reads, and their ratios to those of the same scene without treatment.
     """
@@ -204,15 +204,15 @@ def surfaces(resolution: int = 60, tolerance: float = 1e-8) -> list[Row]:
             }
             bare = bare or values
             ratios = {f"{key} ÷ none": value / bare[key] for key, value in values.items()}
-            rows.append(Row(f"{name}: {treatment}", values | ratios))
+            rows.append(Timing(f"{name}: {treatment}", values | ratios))
     return rows
 
 
-def _row(name: str, cpu: float, wall: float, base: float, **more: Any) -> Row:
-    return Row(name, {"cpu_s": cpu, "wall_s": wall, "slower": cpu / base, **more})
+def _row(name: str, cpu: float, wall: float, base: float, **more: Any) -> Timing:
+    return Timing(name, {"cpu_s": cpu, "wall_s": wall, "slower": cpu / base, **more})
 
 
-def solvers(resolution: int = 120, tolerance: float = 1e-8, repeats: int = 3) -> list[Row]:
+def solvers(resolution: int = 120, tolerance: float = 1e-8, repeats: int = 3) -> list[Timing]:
     """The whole static solve against assembled alternatives, to the same residual.
 
     Set-up and assembly are included, compilation is not. PARDISO (`pypardiso`, extra ``bench``)
@@ -220,14 +220,14 @@ def solvers(resolution: int = 120, tolerance: float = 1e-8, repeats: int = 3) ->
 
     Returns
     -------
-    list of Row
+    list of Timing
         Values: ``cpu_s`` (all threads), ``wall_s``, ``slower`` (CPU seconds over the bond
         solver's), ``iterations``, ``residual``.
     """
     scene = crack_tip(resolution)
     scene.solve(tolerance)
     threads = numba.get_num_threads()
-    rows: list[Row] = []
+    rows: list[Timing] = []
     base = 0.0
     try:
         # One thread first: CPU seconds then hold no waiting for other threads.
@@ -252,7 +252,7 @@ def solvers(resolution: int = 120, tolerance: float = 1e-8, repeats: int = 3) ->
     return rows + ([pardiso] if pardiso else [])
 
 
-def _scipy_cg(problem: Discretisation, tolerance: float, base: float) -> Row:
+def _scipy_cg(problem: Discretisation, tolerance: float, base: float) -> Timing:
     """SciPy CG with block Jacobi on the CSR matrix, assembly included."""
     operator = problem.operator
     rhs = problem.right_hand_side()
@@ -287,7 +287,7 @@ def _scipy_cg(problem: Discretisation, tolerance: float, base: float) -> Row:
     )
 
 
-def _pardiso(problem: Discretisation, base: float) -> Row | None:
+def _pardiso(problem: Discretisation, base: float) -> Timing | None:
     """MKL PARDISO through pypardiso, assembly included; None where it is not installed."""
     try:
         import pypardiso
@@ -316,12 +316,12 @@ def _residual(problem: Discretisation, x: Array, rhs: Array) -> float:
     return float(np.linalg.norm(defect) / np.linalg.norm(rhs))
 
 
-def growth(resolutions: tuple[int, ...], tolerance: float = 1e-8) -> list[Row]:
+def growth(resolutions: tuple[int, ...], tolerance: float = 1e-8) -> list[Timing]:
     """Set-up and solve as the lattice is refined, smallest first (peak memory only grows).
 
     Returns
     -------
-    list of Row
+    list of Timing
         Values: ``particles``, ``unknowns``, ``iterations``, ``setup_s``, ``solve_s``,
         ``us_per_particle``, ``peak_gb`` (of the process so far), ``error`` (relative L2 against
         the closed form).
@@ -339,7 +339,7 @@ def growth(resolutions: tuple[int, ...], tolerance: float = 1e-8) -> list[Row]:
         error = np.linalg.norm(solution.displacement[free] - exact) / np.linalg.norm(exact)
         statistics = solution.statistics
         rows.append(
-            Row(
+            Timing(
                 f"a/{resolution}",
                 {
                     "particles": statistics.particles,

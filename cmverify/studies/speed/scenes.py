@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from cmverify.cases.crack_tip import STIFFNESS
-from references.analytic import lekhnitskii
+from cmverify.cases.common import materials
+from cmverify.cases.common.scenes import cracked_disc
+from cmverify.cases.crack_tip import STIFFNESS, Problem
 from solver import (
     ConductivityTensor,
     Crack,
@@ -21,27 +22,12 @@ from solver import (
     rectangle,
 )
 
-# Eq. 106, GPa.
-SILICON = [[141.1, 39.3, 0.0], [39.3, 141.1, 0.0], [0.0, 0.0, 79.6]]
-
 
 def crack_tip(resolution: int) -> Scene:
     """The crack-tip problem, mode I, at spacing a/resolution."""
-    return Scene(
-        region=disc(1.0),
-        spacing=1.0 / resolution,
-        material=ElasticTensor(STIFFNESS),
-        supports=[
-            Support.layer(
-                cells=5.5,
-                displacement=lambda x, y: lekhnitskii.crack_tip_displacement(
-                    STIFFNESS, x, y, 1.0, 0.0
-                ),
-                rotation=lambda x, y: lekhnitskii.crack_tip_rotation(STIFFNESS, x, y, 1.0, 0.0),
-            )
-        ],
-        cracks=[Crack((-1.5, 0.0), (0.0, 0.0))],
-    )
+    field = Problem(1.0, 0.0)
+    layer = Support.layer(cells=5.5, displacement=field.displacement, rotation=field.rotation)
+    return cracked_disc(ElasticTensor(STIFFNESS), resolution, layer)
 
 
 def kernel_scenes(resolution: int) -> dict[str, Scene]:
@@ -95,7 +81,7 @@ def static_scenes(resolution: int) -> dict[str, Scene]:
             square - disc(0.25, (0.5, 0.3)), cracks=[Crack((-1.2, 0.0), (-0.2, 0.0), (0.2, 0.4))]
         ),
         "no surface treatment, hole": plate(square - hole, surface="none"),
-        "silicon, hole": plate(square - hole, material=ElasticTensor(SILICON)),
+        "silicon, hole": plate(square - hole, material=ElasticTensor(materials.TENSORS["silicon"])),
         "ν = 1/3 (no rotations), hole": plate(
             square - hole, material=ElasticTensor.isotropic(1.0, 1 / 3)
         ),

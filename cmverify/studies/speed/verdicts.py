@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from cmverify.judge.verdict import Verdict
+from cmverify.studies.speed.measure import Timing
 
-from cmverify.studies.speed.measure import Row
 
-
-@dataclass(frozen=True)
-class Verdict:
-    """One requirement with its measured value."""
-
-    what: str
-    measured: float
-    asked: str
-    passed: bool
+def _verdict(what: str, measured: float, asked: str, passed: bool) -> Verdict:
+    method, _, quantity = what.rpartition(": ")
+    return Verdict("speed", method, quantity, "bound", "", measured, asked, bool(passed))
 
 
 def _at_least(what: str, measured: float, bound: float) -> Verdict:
-    return Verdict(what, measured, f"≥ {bound:g}", bool(measured >= bound))
+    return _verdict(what, measured, f"≥ {bound:g}", measured >= bound)
 
 
 def _at_most(what: str, measured: float, bound: float) -> Verdict:
-    return Verdict(what, measured, f"≤ {bound:g}", bool(measured <= bound))
+    return _verdict(what, measured, f"≤ {bound:g}", measured <= bound)
 
 
-def of_kernel(rows: list[Row]) -> list[Verdict]:
+def of_kernel(rows: list[Timing]) -> list[Verdict]:
     """Five times SciPy's CSR product at a twentieth of its memory, 1.6 from two threads."""
     found = []
     for row in rows:
@@ -41,7 +35,7 @@ def of_kernel(rows: list[Row]) -> list[Verdict]:
     return found
 
 
-def of_solvers(rows: list[Row]) -> list[Verdict]:
+def of_solvers(rows: list[Timing]) -> list[Verdict]:
     """1/25 of the CPU seconds of SciPy CG in CSR, 1/30 of MKL PARDISO."""
     bounds = {"SciPy CG, block Jacobi, CSR": 25.0, "MKL PARDISO": 30.0}
     return [
@@ -51,7 +45,7 @@ def of_solvers(rows: list[Row]) -> list[Verdict]:
     ]
 
 
-def of_growth(rows: list[Row]) -> list[Verdict]:
+def of_growth(rows: list[Timing]) -> list[Verdict]:
     """Twelve iterations at every spacing; a million particles in 4 GB at 1.5 times the cost."""
     found = [_at_most(f"{row.name}: iterations", row.values["iterations"], 12) for row in rows]
     by_name = {row.name: row.values for row in rows}
@@ -63,12 +57,12 @@ def of_growth(rows: list[Row]) -> list[Verdict]:
     return found
 
 
-def of_scenes(rows: list[Row]) -> list[Verdict]:
+def of_scenes(rows: list[Timing]) -> list[Verdict]:
     """Iterations on other static scenes: twenty is the goal."""
     return [_at_most(f"{row.name}: iterations", row.values["iterations"], 20) for row in rows]
 
 
-def of_surfaces(rows: list[Row]) -> list[Verdict]:
+def of_surfaces(rows: list[Timing]) -> list[Verdict]:
     """At most 1.5 times the iterations; nothing at all where every edge is prescribed."""
     found = []
     for row in rows:

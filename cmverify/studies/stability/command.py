@@ -10,8 +10,8 @@ import typer
 
 if TYPE_CHECKING:
     from cmverify.case import Array
+    from cmverify.studies.stability.assessments import Assessment
     from cmverify.studies.stability.page import Section
-    from cmverify.studies.stability.verdicts import Verdict
 
 
 class Study(StrEnum):
@@ -66,7 +66,7 @@ def stability(
 
     from cmverify.cases.common import materials
     from cmverify.studies.stability import page
-    from cmverify.studies.stability.verdicts import compare
+    from cmverify.studies.stability.assessments import compare
 
     console = Console()
     try:
@@ -122,7 +122,7 @@ def _suite() -> dict[str, Array]:
     }  # fmt: skip
 
 
-def _print(console, verdicts: list[Verdict]) -> None:  # type: ignore[no-untyped-def]
+def _print(console, verdicts: list[Assessment]) -> None:  # type: ignore[no-untyped-def]
     from rich.table import Table
 
     view = Table(box=None, header_style="bold", pad_edge=False)
@@ -145,8 +145,9 @@ def _print(console, verdicts: list[Verdict]) -> None:  # type: ignore[no-untyped
 
 
 def _section(study: Study, fine: bool) -> Section:
+    from cmverify.report.picture import Picture
     from cmverify.studies.stability import figures, polar, studies
-    from cmverify.studies.stability.page import Picture, Section, spoken
+    from cmverify.studies.stability.page import Section, spoken
 
     if study is Study.POISSON:
         found = studies.poisson(fine)
@@ -157,9 +158,9 @@ def _section(study: Study, fine: bool) -> Section:
             f"are negative beyond ν = 1/3. In plane strain the limit is {said}."
         )
         alt = "; ".join(f"{one.title}: {spoken(one.margin)}" for one in found)
-        picture = Picture(
-            "stability-poisson", figures.poisson(found, limits[5]),
-            "Margin over Poisson's ratio and horizon, lattice calibration.", alt,
+        picture = Picture.drawn(
+            "stability-poisson", "png", figures.poisson(found, limits[5]),
+            "Margin over Poisson's ratio and horizon, lattice calibration.", alt, wide=True,
         )  # fmt: skip
         return Section("Poisson's ratio and horizon", text, (picture,))
     if study is Study.REPRESENTABLE:
@@ -170,10 +171,10 @@ def _section(study: Study, fine: bool) -> Section:
             f"{100 * shares.shares[-1]:.0f} % at m = 10, and "
             f"{100 * shares.never:.0f} % at no m: C66 ≥ C12 is necessary, not sufficient."
         )
-        picture = Picture(
-            "stability-representable", figures.representability(shares),
+        picture = Picture.drawn(
+            "stability-representable", "png", figures.representability(shares),
             "Smallest m with non-negative, exact bond moduli (ν12 = 1/4), and shares of random "
-            "tensors.", text,
+            "tensors.", text, wide=True,
         )  # fmt: skip
         return Section("Which tensors non-negative bonds can make", text, (picture,))
     if study is Study.POLAR:
@@ -181,8 +182,8 @@ def _section(study: Study, fine: bool) -> Section:
 
         names = ("Fig. 2", "bone")
         section = _polar({name: materials.TENSORS[name] for name in names}, 5)
-        picture = Picture(
-            "stability-fig3", figures.over_poisson(polar.over_poisson()),
+        picture = Picture.drawn(
+            "stability-fig3", "png", figures.over_poisson(polar.over_poisson()),
             "Macro- and micromoduli over Poisson's ratio, as in Fig. 3.",
             "k_n stays positive, k_t falls through zero at one third.", wide=False,
         )  # fmt: skip
@@ -206,18 +207,23 @@ def _section(study: Study, fine: bool) -> Section:
         )
     alt = "; ".join(f"{one.title}: {spoken(one.margin)}" for one in found)
     log = (True, study is Study.ORTHOTROPIC)
-    return Section(title, text, (Picture(name, figures.maps(found, log), caption, alt),))
+    return Section(
+        title,
+        text,
+        (Picture.drawn(name, "png", figures.maps(found, log), caption, alt, wide=True),),
+    )
 
 
 def _polar(solids: dict[str, Array], m: float) -> Section:
+    from cmverify.report.picture import Picture
     from cmverify.studies.stability import figures, polar
-    from cmverify.studies.stability.page import Picture, Section
+    from cmverify.studies.stability.page import Section
 
     pictures = tuple(
-        Picture(
-            f"stability-polar-{index + 1}", figures.polar(polar.polar(name, voigt, m)),
+        Picture.drawn(
+            f"stability-polar-{index + 1}", "png", figures.polar(polar.polar(name, voigt, m)),
             f"{name}: moduli over the direction, as in Fig. 2; markers are the bonds at m = {m:g}.",
-            f"Polar plots of macro- and micromoduli of {name}.",
+            f"Polar plots of macro- and micromoduli of {name}.", wide=True,
         )
         for index, (name, voigt) in enumerate(solids.items())
     )  # fmt: skip

@@ -2,39 +2,16 @@
 
 from __future__ import annotations
 
-import base64
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cmverify.report.picture import Picture
 from cmverify.run.results import write_text
-from cmverify.studies.stability.verdicts import Verdict
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-
-@dataclass(frozen=True)
-class Picture:
-    """A figure with its caption and words for those who cannot see it; written as a PNG too."""
-
-    name: str
-    figure: Figure
-    caption: str
-    alt: str
-    wide: bool = True
-
-    @property
-    def png(self) -> bytes:
-        """The picture as a file."""
-        buffer = io.BytesIO()
-        self.figure.savefig(buffer, format="png", dpi=130)
-        return buffer.getvalue()
+from cmverify.studies.stability.assessments import Assessment
 
 
 @dataclass(frozen=True)
@@ -47,7 +24,7 @@ class Section:
 
 
 def write(
-    verdicts: Sequence[Verdict], sections: Sequence[Section], command: str, folder: Path
+    verdicts: Sequence[Assessment], sections: Sequence[Section], command: str, folder: Path
 ) -> Path:
     """Write stability.html and the figures beside it; returns the page's path."""
     from jinja2 import Environment, StrictUndefined
@@ -58,11 +35,8 @@ def write(
     for section in sections:
         pictures = []
         for picture in section.pictures:
-            data = picture.png
-            (folder / f"{picture.name}.png").write_bytes(data)
-            uri = "data:image/png;base64," + base64.b64encode(data).decode()
-            about = {"caption": picture.caption, "alt": picture.alt, "wide": picture.wide}
-            pictures.append({"uri": uri, **about})
+            picture.save(folder / picture.name)
+            pictures.append(picture)
         drawn.append({"title": section.title, "text": section.text, "pictures": pictures})
     resources = files("cmverify.report")
     page = environment.from_string(
@@ -79,7 +53,7 @@ def write(
     return path
 
 
-def all_confirmed(verdicts: Sequence[Verdict]) -> bool:
+def all_confirmed(verdicts: Sequence[Assessment]) -> bool:
     """Whether there are verdicts and none is contradicted."""
     return bool(verdicts) and all(bool(v.confirmed) for v in verdicts if v.confirmed is not None)
 

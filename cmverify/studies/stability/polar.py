@@ -78,7 +78,7 @@ def off_axis(voigt: Array, psi: Array) -> tuple[Array, Array]:
 
 def polar(solid: str, voigt: Array, m: float = 5, count: int = 361) -> Polar:
     """Curves of the closed forms and the bonds of every calibration that has any."""
-    from cmverify.studies.stability.studies import CALIBRATIONS
+    from cmverify.cases.common.materials import CALIBRATIONS
     from solver import CalibrationError, ElasticTensor, Family
     from solver.material import ElasticModuli, calibrate
 

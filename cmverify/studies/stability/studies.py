@@ -14,7 +14,6 @@ from cmverify.cases.common import materials
 if TYPE_CHECKING:
     from solver.material import Calibration
 
-CALIBRATIONS: tuple[Calibration, ...] = ("continuum", "lattice", "positive")
 #: Values of a map where there are no such moduli, and where the rotation block has a pole.
 NONE, POLE = np.nan, -np.inf
 
@@ -42,7 +41,7 @@ class Map:
 
 def margin(tensor: Array, m: float, calibration: Calibration, count: int) -> float:
     """Stability margin, `NONE` without moduli, `POLE` where rotations lose their stiffness."""
-    from cmverify.studies.stability.verdicts import material
+    from cmverify.studies.stability.assessments import material
     from solver import CalibrationError, Family
     from solver.material import assess, calibrate
 
@@ -112,7 +111,7 @@ def orthotropic(fine: bool, m: float = 5) -> list[Map]:
                 materials.orthotropic(e, 1.0, g, NU12), m, c, 24 if fine else 12
             ),
         )
-        for calibration in CALIBRATIONS
+        for calibration in materials.CALIBRATIONS
     ]
 
 
@@ -130,7 +129,7 @@ def conduction(fine: bool, m: float = 3) -> list[Map]:
                 materials.conductivity(r, np.radians(a)), m, c, 24 if fine else 12
             ),
         )
-        for calibration in CALIBRATIONS
+        for calibration in materials.CALIBRATIONS
     ]
 
 
@@ -140,7 +139,7 @@ ANGLE = 20.0
 
 def smallest_horizon(tensor: Array, largest: int = 10) -> float:
     """Smallest m with non-negative exact moduli; inf if no m has them, NaN if none to `largest`."""
-    from cmverify.studies.stability.verdicts import material
+    from cmverify.studies.stability.assessments import material
     from solver import Family
     from solver.material import representable, representable_by_directions
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cmverify.studies.speed import measure, verdicts
-from cmverify.studies.speed.measure import Row
+from cmverify.studies.speed.measure import Timing
 
 
 def test_all_formats_hold_the_same_operator() -> None:
@@ -52,43 +52,45 @@ def test_growth_reports_flat_iterations_and_a_falling_error() -> None:
     [
         (
             verdicts.of_kernel,
-            Row("x: SciPy CSR", {"slower": 5.05, "memory": 20.2, "error": 1e-15, "threads": 1}),
-            Row("x: SciPy CSR", {"slower": 4.95, "memory": 19.8, "error": 1e-12, "threads": 1}),
+            Timing("x: SciPy CSR", {"slower": 5.05, "memory": 20.2, "error": 1e-15, "threads": 1}),
+            Timing("x: SciPy CSR", {"slower": 4.95, "memory": 19.8, "error": 1e-12, "threads": 1}),
         ),
         (
             verdicts.of_kernel,
-            Row("x: matrix-free, 2 threads", {"slower": 1 / 1.62, "threads": 2}),
-            Row("x: matrix-free, 2 threads", {"slower": 1 / 1.58, "threads": 2}),
+            Timing("x: matrix-free, 2 threads", {"slower": 1 / 1.62, "threads": 2}),
+            Timing("x: matrix-free, 2 threads", {"slower": 1 / 1.58, "threads": 2}),
         ),
         (
             verdicts.of_surfaces,
-            Row("heat: extrapolated", {"iterations ÷ none": 1.5, "bytes ÷ none": 1.0}),
-            Row("heat: extrapolated", {"iterations ÷ none": 1.51, "bytes ÷ none": 1.01}),
+            Timing("heat: extrapolated", {"iterations ÷ none": 1.5, "bytes ÷ none": 1.0}),
+            Timing("heat: extrapolated", {"iterations ÷ none": 1.51, "bytes ÷ none": 1.01}),
         ),
         (
             verdicts.of_solvers,
-            Row("MKL PARDISO", {"slower": 30.3}),
-            Row("MKL PARDISO", {"slower": 29.7}),
+            Timing("MKL PARDISO", {"slower": 30.3}),
+            Timing("MKL PARDISO", {"slower": 29.7}),
         ),
         (
             verdicts.of_growth,
-            Row("a/60", {"iterations": 12, "us_per_particle": 1.0, "peak_gb": 1.0}),
-            Row("a/60", {"iterations": 13, "us_per_particle": 1.0, "peak_gb": 1.0}),
+            Timing("a/60", {"iterations": 12, "us_per_particle": 1.0, "peak_gb": 1.0}),
+            Timing("a/60", {"iterations": 13, "us_per_particle": 1.0, "peak_gb": 1.0}),
         ),
     ],
 )
-def test_verdicts_turn_at_their_bounds(judge, good: Row, bad: Row) -> None:  # type: ignore[no-untyped-def]
+def test_verdicts_turn_at_their_bounds(judge, good: Timing, bad: Timing) -> None:  # type: ignore[no-untyped-def]
     assert all(v.passed for v in judge([good]))
     assert not any(v.passed for v in judge([bad]))
 
 
 def test_a_million_particles_are_held_to_cost_and_memory() -> None:
-    base = Row("a/120", {"iterations": 12, "us_per_particle": 10.0, "peak_gb": 0.3})
-    large = Row("a/560", {"iterations": 12, "us_per_particle": 15.2, "peak_gb": 4.1})
-    failed = [v.what for v in verdicts.of_growth([base, large]) if not v.passed]
+    base = Timing("a/120", {"iterations": 12, "us_per_particle": 10.0, "peak_gb": 0.3})
+    large = Timing("a/560", {"iterations": 12, "us_per_particle": 15.2, "peak_gb": 4.1})
+    failed = [
+        f"{v.method}: {v.quantity}" for v in verdicts.of_growth([base, large]) if not v.passed
+    ]
     assert failed == ["a/560: time per particle ÷ a/120's", "a/560: peak memory, GB"]
 
 
 def test_not_a_number_fails() -> None:
-    row = Row("MKL PARDISO", {"slower": float("nan")})
+    row = Timing("MKL PARDISO", {"slower": float("nan")})
     assert not verdicts.of_solvers([row])[0].passed

@@ -6,7 +6,7 @@ from typer.testing import CliRunner
 
 from cmverify.cases.common import bond_energies, materials
 from cmverify.cli import app
-from cmverify.studies.stability import figures, page, polar, studies, verdicts
+from cmverify.studies.stability import assessments, figures, page, polar, studies
 from references.analytic.voigt import turned_axes
 from solver import ElasticTensor, Family
 from solver.material import calibrate, representable
@@ -43,7 +43,7 @@ def test_shear_bonds_vanish_at_one_third():
 def test_the_limit_of_plane_strain_separates_stable_from_unstable():
     limit = studies.poisson_limit(3)
     for nu, stable in ((limit - 3e-4, True), (limit + 3e-4, False)):
-        found = verdicts.judge("", materials.isotropic(nu, "strain"), 3, "lattice")
+        found = assessments.judge("", materials.isotropic(nu, "strain"), 3, "lattice")
         assert found.stable == stable
         assert found.confirmed
 
@@ -69,7 +69,7 @@ def test_extreme_eigenvalues_bound_those_of_any_wave():
 
     family = Family(3)
     moduli = calibrate(family, ElasticTensor.isotropic(1.0, 0.45))
-    low, high = verdicts.extreme_eigenvalues(family, moduli, 48)
+    low, high = assessments.extreme_eigenvalues(family, moduli, 48)
     k = np.random.default_rng(0).uniform(-np.pi, np.pi, (300, 2))
     values = np.linalg.eigvalsh(symbol(family, moduli, k))
     assert low < 0 < high
@@ -79,14 +79,14 @@ def test_extreme_eigenvalues_bound_those_of_any_wave():
 
 def test_a_verdict_that_bond_energies_contradict_is_not_confirmed(monkeypatch):
     monkeypatch.setattr(bond_energies, "is_unstable", lambda *_: True)
-    found = verdicts.judge("silicon", materials.TENSORS["silicon"], 3, "lattice")
+    found = assessments.judge("silicon", materials.TENSORS["silicon"], 3, "lattice")
     assert found.confirmed is False
     assert not page.all_confirmed([found])
     assert not page.all_confirmed([])
 
 
 def test_conductors_are_judged_too():
-    found = verdicts.compare("1000 : 1", materials.conductivity(1000.0, np.pi / 8), 3)
+    found = assessments.compare("1000 : 1", materials.conductivity(1000.0, np.pi / 8), 3)
     assert [v.calibration for v in found] == ["continuum", "lattice", "positive"]
     assert found[-1].kind == "unrepresentable"
     assert found[-1].confirmed

@@ -23,7 +23,7 @@ CHOICES: tuple[tuple[Calibration, str | None], ...] = (
 
 
 @dataclass(frozen=True)
-class Verdict:
+class Assessment:
     """What the symbol says of a calibrated solid.
 
     Attributes
@@ -103,7 +103,7 @@ def judge(
     law: str | None = None,
     area_rule: AreaRule = "partial",
     count: int = 48,
-) -> Verdict:
+) -> Assessment:
     """Calibrate, assess, and confirm.
 
     Parameters
@@ -128,7 +128,7 @@ def judge(
             family, tensor
         )
         claimed = None if calibration != "positive" else not exist
-        return Verdict(
+        return Assessment(
             solid, calibration, law, m, "unrepresentable", confirmed=claimed, remark=str(error)
         )
     found = assess(family, moduli, count)
@@ -140,7 +140,7 @@ def judge(
             confirmed = bond_energies.rotation_changes_sign(family, moduli)
     lowest, highest = extreme_eigenvalues(family, moduli)
     scale = np.abs(tensor).max()
-    return Verdict(
+    return Assessment(
         solid,
         calibration,
         law,
@@ -155,7 +155,9 @@ def judge(
     )
 
 
-def compare(solid: str, tensor: Array, m: float, area_rule: AreaRule = "partial") -> list[Verdict]:
+def compare(
+    solid: str, tensor: Array, m: float, area_rule: AreaRule = "partial"
+) -> list[Assessment]:
     """Every calibration and law of `CHOICES` for one solid (conduction has no shear laws)."""
     choices = CHOICES if tensor.shape == (3, 3) else tuple((c, None) for c, law in CHOICES)
     unique = dict.fromkeys(choices)
