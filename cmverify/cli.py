@@ -261,12 +261,12 @@ def solve(
         float, typer.Option(min=0.0, help="Estimated minutes that a solve may take.")
     ] = 15.0,
 ) -> None:
-    """Solve a scene file, or let its cracks grow, and write its fields as .vtu and .npz."""
+    """Do what a scene file asks for, and write its fields as .vtu and .npz."""
     from rich.console import Console
+    from rich.markup import escape
 
     from cmverify.exchange import scene_file
     from cmverify.exchange.export import check_writable
-    from solver.result import Result
 
     base = out or scene.with_suffix("")
     try:
@@ -276,7 +276,7 @@ def solve(
             max_minutes * 60,
         )
         check_writable(base)
-        result: Result = request.solve() if request.plan is None else request.grow()
+        result = request.run()
         said, paths = result.summary(), result.write(base)
     except ValueError as error:
         _refuse(str(error))
@@ -285,13 +285,18 @@ def solve(
     except KeyboardInterrupt:
         _interrupted("nothing was written; a [fracture] table may name a checkpoint to go on from")
     console = Console()
+    warnings = said.pop("warnings", ())
     for name, value in said.items():
-        console.print(
-            f"{name.replace('_', ' '):<16}{value:.4g}"
-            if isinstance(value, float)
-            else f"{name.replace('_', ' '):<16}{value}"
-        )
+        console.print(f"{name.replace('_', ' '):<16}{_plain(value)}", highlight=False)
+    for warning in warnings:
+        console.print(f"[yellow]warning[/]         {escape(warning)}")
     console.print("wrote", *map(str, paths))
+
+
+def _plain(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:.5g}"
+    return ", ".join(map(_plain, value)) if isinstance(value, list | tuple) else str(value)
 
 
 def main() -> None:

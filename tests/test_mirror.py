@@ -50,9 +50,6 @@ ELSEWHERE = {
     # Commands and what they run.
     "cmverify/doctor.py": "tests/cmverify/test_cli.py",
     "cmverify/exchange/export.py": "tests/cmverify/exchange/test_scene_file.py",
-    "cmverify/exchange/fracture_table.py": "tests/cmverify/exchange/test_scene_file.py",
-    "cmverify/exchange/refusal.py": "tests/cmverify/exchange/test_mutated.py",
-    "cmverify/exchange/values.py": "tests/cmverify/exchange/test_mutated.py",
     "cmverify/run/environment.py": "tests/cmverify/run/test_runner.py",
     "cmverify/exchange/budget.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/exchange/model.py": "tests/cmverify/exchange/test_scene_file.py",

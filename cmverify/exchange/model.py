@@ -111,15 +111,20 @@ class Discretisation(Table):
 # ---- the material -----------------------------------------------------------------------
 
 
-class _Turned(Table):
+class _Massive(Table):
+    density: Positive | None = Field(default=None, description="Mass per volume, kg/m³")
+
+
+class _Turned(_Massive):
     angle_degrees: Number = Field(default=0.0, description="Turn anticlockwise")
 
 
-class Conductivity(_Turned):
+class Conductivity(Table):
     """A conductor."""
 
     kind: Literal["conductivity"]
     tensor: Matrix2 = Field(description="Conductivity, W/(m K) or S/m")
+    angle_degrees: Number = Field(default=0.0, description="Turn anticlockwise")
 
 
 class Elastic(_Turned):
@@ -129,7 +134,7 @@ class Elastic(_Turned):
     voigt: Matrix3 = Field(description="[[C11, C12, C16], [C12, C22, C26], [C16, C26, C66]], Pa")
 
 
-class Isotropic(Table):
+class Isotropic(_Massive):
     """An isotropic elastic solid."""
 
     kind: Literal["isotropic"]

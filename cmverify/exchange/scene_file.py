@@ -18,16 +18,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cmverify.exchange import budget, fracture_table, model
-from cmverify.exchange.fracture_table import Plan
+from cmverify.exchange import budget, model
 from cmverify.exchange.model import SceneFile
 from cmverify.exchange.refusal import Place, SceneFileError, Source
 
 if TYPE_CHECKING:
-    from solver import Crack, Load, Region, Scene, Solution, Support
-    from solver.fracture import Growth
+    from solver import Crack, Load, Region, Scene, Support
+    from solver.result import Result
 
-__all__ = ["Request", "SceneFileError", "read", "read_fracture", "request"]
+__all__ = ["Request", "SceneFileError", "read", "request"]
 
 
 @dataclass(frozen=True)
@@ -40,37 +39,30 @@ class Request:
         To say where something is wrong.
     file : SceneFile
     scene : Scene
-    plan : Plan or None
-        How its cracks grow, if they do.
+    analysis : str
+        What is done with it.
+    options : dict
+        Keywords of the analysis.
     """
 
     source: Source
     file: SceneFile
     scene: Scene
-    plan: Plan | None
+    analysis: str
+    options: dict[str, Any]
 
-    def solve(self) -> Solution:
-        """Static (or steady) solution.
-
-        Raises
-        ------
-        SceneFileError
-            If the physics says no.
-        """
-        with self._refused():
-            return self.scene.solve(tolerance=self.file.solve.tolerance)
-
-    def grow(self) -> Growth:
-        """Let its cracks grow.
+    def run(self) -> Result:
+        """Do what the file asks for.
 
         Raises
         ------
         SceneFileError
             If the physics says no.
         """
-        assert self.plan is not None
+        from solver.analyses import analyses
+
         with self._refused():
-            return self.plan.run(self.scene)
+            return analyses()[self.analysis].run(self.scene, **self.options)
 
     @contextmanager
     def _refused(self) -> Iterator[None]:
@@ -90,11 +82,12 @@ class Request:
         for number, crack in enumerate(self.scene.cracks):
             if str(crack.points) in message:
                 return ("crack", number)
-        if self.plan is not None:
-            if "checkpoint" in message:
-                return ("fracture", "checkpoint")
-            if isinstance(error, solver.ToughnessError) or "criterion" in message:
-                return ("fracture",)
+        table = self.source.data.get(self.analysis, {})
+        for key in table:
+            if re.search(rf"\b{re.escape(key)}\b", message):
+                return (self.analysis, key)
+        if isinstance(error, solver.ToughnessError):
+            return (self.analysis,)
         kinds: list[tuple[type[Exception], Place]] = [
             (solver.MechanismError, ("support",)),
             (solver.CalibrationError, ("material",)),
@@ -130,9 +123,9 @@ def request(path: Path, memory: float | None = None, seconds: float = budget.SEC
     file = _declared(source)
     scene = _scene(file, source)
     _afford(file, scene, source, memory, seconds)
-    plan = None if file.fracture is None else fracture_table.plan(file.fracture, source)
+    analysis, options = _asked(file, source)
     _try_on_lattice(file, scene, source)
-    return Request(source, file, scene, plan)
+    return Request(source, file, scene, analysis, options)
 
 
 def read(path: Path) -> tuple[Scene, dict[str, Any]]:
@@ -147,15 +140,22 @@ def read(path: Path) -> tuple[Scene, dict[str, Any]]:
     return found.scene, found.file.solve.model_dump(exclude_unset=True)
 
 
-def read_fracture(path: Path) -> Plan | None:
-    """The [fracture] table of a scene file, or None if it has none.
+def _asked(file: SceneFile, source: Source) -> tuple[str, dict[str, Any]]:
+    """The analysis that a file asks for, and its keywords."""
+    from solver.analyses import analyses
+    from solver.fracture import checkpoint
 
-    Raises
-    ------
-    SceneFileError
-        As `request`.
-    """
-    return request(path).plan
+    given = {name: getattr(file, name, None) for name in analyses() if name != "solve"}
+    asked = {name: table for name, table in given.items() if table is not None}
+    if len(asked) > 1:
+        first, second = list(asked)[:2]
+        raise source.error((second,), f"one analysis at a time: the file has [{first}] too")
+    name, table = next(iter(asked.items()), ("solve", file.solve))
+    options = {key: getattr(table, key) for key in table.model_fields_set}
+    if "checkpoint" in options:
+        with source.at(name, "checkpoint"):
+            checkpoint.check(options["checkpoint"])
+    return name, options
 
 
 # ---- from bytes to the declared model ---------------------------------------------------
@@ -186,8 +186,10 @@ def _source(path: Path) -> Source:
 def _declared(source: Source) -> SceneFile:
     from pydantic import ValidationError
 
+    from cmverify.exchange.analysis_table import scene_model
+
     try:
-        return SceneFile.model_validate(source.data)
+        return scene_model().model_validate(source.data)
     except ValidationError as error:
         raise source.invalid(error) from None
 
@@ -224,6 +226,7 @@ def _scene(file: SceneFile, source: Source) -> Scene:
             loads=loads,
             cracks=cracks,
             law=_law(law, exponent),
+            density=getattr(file.material, "density", None),
             **options,
         )
 
@@ -258,7 +261,8 @@ def _material(table: Any) -> Any:
     elif table.kind == "elastic":
         material = ElasticTensor(table.voigt)
     else:
-        values = {k: v for k, v in table if k not in ("kind", "angle_degrees") and v is not None}
+        own = ("kind", "angle_degrees", "density")
+        values = {k: v for k, v in table if k not in own and v is not None}
         material = getattr(ElasticTensor, table.kind)(**values)
     angle = getattr(table, "angle_degrees", 0.0)
     return material.rotated(np.radians(angle)) if angle else material

@@ -15,9 +15,7 @@ from ..arrays import Array
 from ..material.physics import Physics
 
 
-def inertia(
-    volumes: Array, active: NDArray[np.int64], physics: Physics, components: int
-) -> Array:
+def inertia(volumes: Array, active: NDArray[np.int64], physics: Physics, components: int) -> Array:
     """Inertia of the active unknowns at density one, none in rotations, (components, active).
 
     Parameters

@@ -53,7 +53,7 @@ def test_a_scene_is_solved_as_written(tmp_path):
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda p: p.name)
 def test_examples_can_be_read(path):
     scene, _ = scene_file.read(path)
-    assert scene.supports
+    assert scene.supports or scene.density  # what vibrates may be free
 
 
 @pytest.mark.parametrize(
@@ -140,8 +140,9 @@ def test_a_fracture_table_is_run_and_written(tmp_path):
     assert np.load(tmp_path / "scene.npz")["damage"].max() > 0.2
 
 
-def test_scenes_without_a_fracture_table_have_no_plan(tmp_path):
-    assert scene_file.read_fracture(written(tmp_path, SMALL)) is None
+def test_scenes_without_the_table_of_an_analysis_are_solved(tmp_path):
+    found = scene_file.request(written(tmp_path, SMALL))
+    assert found.analysis == "solve"
 
 
 @pytest.mark.parametrize(
@@ -158,4 +159,4 @@ def test_fracture_tables_that_make_no_sense(tmp_path, table, line, message):
     path = written(tmp_path, f"{SMALL}\n[fracture]\n{table}\n")
     at = SMALL.count("\n") + 1 + line
     with pytest.raises(SceneFileError, match=rf"scene\.toml:{at}: \[fracture\] .*{message}"):
-        scene_file.read_fracture(path)
+        scene_file.request(path)

@@ -25,8 +25,8 @@ from solver import (
 )
 from solver.analyses import modes as module
 from solver.operators.assembled import to_csr
-from solver.problem import Discretisation
 from solver.operators.mass import inertia
+from solver.problem import Discretisation
 from solver.problem.rigid import rigid_motions
 from tests.solver.bodies import FIG_7, Cells, few, masks
 
