@@ -245,9 +245,10 @@ def _border(
     if phase is not None:
         cells = middle / spacing - phase
         # Exactly where it was drawn, if that is on a border or a centre.
-        if abs(cells - np.rint(cells)) < _TIE:
+        rounding = 8 * np.finfo(np.float64).eps * (abs(middle) / spacing + 1.0)
+        if abs(cells - np.rint(cells)) < rounding:
             return middle
-        if abs(cells - np.floor(cells) - 0.5) < _TIE:
+        if abs(cells - np.floor(cells) - 0.5) < rounding:
             return middle - 0.5 * spacing
         return float((np.rint(cells) + phase) * spacing)
     if straight[0] != straight[1]:

@@ -15,7 +15,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from ..arrays import Array, Indices
+from ..arrays import Array, Indices, Mask
 from ..errors import SceneError
 from .regions import Crack, Region
 from .rings import CLOSE, EDGE_STEP, SHARP, rings
@@ -49,11 +49,15 @@ class Outline:
         First and last node; the body lies to the left.
     face : ndarray of int, shape (e,)
         0 for an edge of the region, 1 and 2 for the left and the right face of a crack.
+    owned : ndarray of bool, shape (e,), optional
+        Whether particles on an edge are the body's (`regions`): not on the rim of a hole. All are
+        by default.
     """
 
     nodes: Array
     edges: Indices
     face: Indices
+    owned: Mask | None = None
 
     @classmethod
     def of(
@@ -107,7 +111,9 @@ class Outline:
                     order[-1] = -1
                 line = line[int(first) : size - int(last)]
             chain(line[:size], np.column_stack([order[1:], order[:-1]]), 2)
-        return cls(np.concatenate(nodes), np.concatenate(edges), np.array(face))
+        points, links = np.concatenate(nodes), np.concatenate(edges)
+        middle = 0.5 * (points[links[:, 0]] + points[links[:, 1]])
+        return cls(points, links, np.array(face), region.contains(*middle.T))
 
     @property
     def length(self) -> Array:
@@ -286,6 +292,14 @@ class Outline:
         begin = begin[count == 2]
         pair = begin[:, None] + np.array([0, 1])
         whole = (self.face[met[pair]] == 0).all(axis=1)
+        # From a rim to a rim the line may pass through the hole, or along an edge.
+        way, outward = bond[lines[count == 2]], self.outward[met[pair]]
+        whole &= (np.einsum("ki,ki->k", way, outward[:, 0]) < 0) & (
+            np.einsum("ki,ki->k", way, outward[:, 1]) > 0
+        )
+        middle = start[lines[count == 2]] + depth[pair].mean(axis=1)[:, None] * way
+        near = _SAME * float(np.abs(bond).max(initial=0.0))
+        whole[tree.query(shapely.points(middle), predicate="dwithin", distance=near)[0]] = False
         return (
             lines[count == 2][whole],
             met[pair][whole],

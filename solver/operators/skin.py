@@ -115,8 +115,9 @@ def thickness(outline: Outline, family: Family, moduli: Moduli, edges: Indices) 
         summed[:, direction] += share[:, place]
     round_enough = np.clip((_radius(outline, edges[own]) / h - _TIGHT) / _TIGHT, 0.0, 1.0)
     chains, length = _chains(outline, edges[own], _BUMP * _REACH * h)
-    # The edge belongs to the body: a line of particles on it lies a little inside.
-    outside = _ON_EDGE * outline.outward[edges[own]]
+    # Who owns the edge has the line of particles on it: the body, or the hole whose rim it is.
+    owned = np.ones(len(own), bool) if outline.owned is None else outline.owned[edges[own]]
+    outside = np.where(owned, _ON_EDGE, -_ON_EDGE)[:, None] * outline.outward[edges[own]]
     lack = _lack(
         0.5 * (first + last) / h + outside,
         chains / h + outside[:, None],
