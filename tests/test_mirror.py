@@ -15,8 +15,7 @@ ELSEWHERE = {
     # Aliases of types, and classes without a body.
     "solver/arrays.py": "tests/test_architecture.py",
     "solver/errors.py": "tests/solver/test_scene.py",
-    "solver/compiled.py": "tests/solver/operators/test_kernels.py",
-    "solver/state.py": "tests/solver/test_solution.py",
+    "solver/geometry/spread.py": "tests/solver/problem/test_conditions.py",
     # A case is run, and perturbed, as a whole.
     "cmverify/case.py": "tests/cmverify/judge/test_verdict.py",
     "cmverify/cases/closed_forms.py": "tests/cmverify/faults/test_table.py",
@@ -51,13 +50,8 @@ ELSEWHERE = {
     "cmverify/doctor.py": "tests/cmverify/test_cli.py",
     "cmverify/exchange/export.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/run/environment.py": "tests/cmverify/run/test_runner.py",
-    "cmverify/exchange/budget.py": "tests/cmverify/exchange/test_scene_file.py",
-    "cmverify/exchange/model.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/exchange/refusal.py": "tests/cmverify/exchange/test_scene_file.py",
-    "cmverify/exchange/toml_lines.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/exchange/values.py": "tests/cmverify/exchange/test_scene_file.py",
-    "cmverify/run/folder.py": "tests/cmverify/run/test_runner.py",
-    "cmverify/run/lifeline.py": "tests/cmverify/run/test_runner.py",
     "cmverify/run/progress.py": "tests/cmverify/test_cli.py",
     "cmverify/run/threads.py": "tests/cmverify/run/test_runner.py",
     "cmverify/run/worker.py": "tests/cmverify/run/test_runner.py",

@@ -309,12 +309,6 @@ FAULTS = (
         "finite elements",
     ),
     Fault(
-        "finite elements' intensities + 1 %",
-        f"{F}.interaction.intensities",
-        scaled(1.01),
-        "finite elements",
-    ),
-    Fault(
         "kink angle of largest release + 5 degrees",
         f"{F}.kinks.KinkTable.kink_angle",
         _turn,

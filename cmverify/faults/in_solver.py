@@ -210,7 +210,12 @@ FAULTS = (
         result(np.ones_like),
         "areas",
     ),
-    Fault("stability margin of the other sign", f"{M}.symbol.margins", scaled(-1.0), "stability"),
+    Fault(
+        "stability margin of the other sign",
+        f"{M}.symbol.BulkSymbol.margins",
+        scaled(-1.0),
+        "stability",
+    ),
     Fault(
         "all solids taken to be stable",
         f"{M}.admission.require_admissible",
@@ -450,9 +455,9 @@ FAULTS = (
     ),
     Fault("advance + 5 %", "solver.fracture.growth.Growth.advance", scaled(1.05), "fracture"),
     Fault(
-        "broken bonds stay in the body",
-        "solver.fracture.breaking.Breakable.remove",
-        lambda right: lambda self, bonds: None,
+        "broken bonds stay in the books",
+        "solver.fracture.breaking.Breakable.strengths",
+        lambda right: lambda self: self.whole,
         "fracture",
     ),
 )

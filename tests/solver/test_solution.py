@@ -46,9 +46,9 @@ def test_bodies_without_shear_have_no_rotation():
 
 
 def test_a_solution_has_the_fields_of_its_physics_only(pulled, warm):
-    with pytest.raises(AttributeError, match="displacements"):
+    with pytest.raises(AttributeError, match="not temperature"):
         _ = pulled.temperature
-    with pytest.raises(AttributeError, match="temperatures"):
+    with pytest.raises(AttributeError, match="not displacement"):
         _ = warm.displacement
     np.testing.assert_allclose(warm.temperature[warm.prescribed], 20.0)
     assert (warm.temperature[~warm.prescribed] > 20.0).all()
@@ -69,4 +69,4 @@ def test_statistics_are_plain_values(pulled):
     said = pulled.statistics.as_dict()
     assert said["particles"] == len(pulled.points)
     assert said["residual"] <= 1e-10
-    assert all(isinstance(v, int | float | str | type(None)) for v in said.values())
+    assert all(isinstance(v, int | float | str | list | tuple | type(None)) for v in said.values())

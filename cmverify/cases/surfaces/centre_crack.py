@@ -112,6 +112,8 @@ BOUNDS = {
     "K": {20: 1.2e-2, 50: 8e-3, 100: 3e-3},
     "K by series": {20: 2e-2, 50: 1e-2, 100: 7.5e-3},
 }
+#: Where the material's axes are the crack's the series is the better of the two: 1e-3 was reached.
+SYMMETRIC = BOUNDS | {"K by series": {20: 4e-3, 50: 4e-3, 100: 4e-3}}
 LADDER = {Level.QUICK: (20,), Level.STANDARD: (20, 50), Level.PAPER: (20, 50, 100)}
 
 
@@ -152,7 +154,7 @@ def _case(material: str) -> Case:
                     source="finite elements; measured with half as much again",
                 )
                 for ratio in RATIOS
-                for kind, bounds in BOUNDS.items()
+                for kind, bounds in (BOUNDS if material == "anisotropic" else SYMMETRIC).items()
             ),
         ),
         quantities=quantities,

@@ -14,9 +14,9 @@ from tests.solver.fracture.strip import scene
 @pytest.fixture
 def books():
     built = scene().discretise()
-    body = Equilibrium(built, tolerance=1e-11, max_iterations=2000)
-    body.solve()
     bonds = Breakable(built, np.full(built.family.size, 2.0))
+    body = Equilibrium(built, bonds, tolerance=1e-11, max_iterations=2000)
+    body.solve()
     ledger = Ledger(body, bonds)
     ledger.opened()
     return ledger

@@ -37,8 +37,7 @@ def bonds(material, held=(), **scene) -> BondOperator:
     lattice = Lattice(described.region, 0.1, family.reach)
     moduli = calibrate(family, material, "lattice")
     found = Bonds(lattice, family, described.cracks, described.surface)
-    components = 1 if not described.elastic else 3 if moduli.has_shear else 2
-    return BondOperator(found, moduli, np.zeros((components, lattice.count), dtype=bool))
+    return BondOperator(found, moduli, np.zeros((moduli.components, lattice.count), dtype=bool))
 
 
 CLAMPED = [Support.where(lambda x, y: x < -0.35, displacement=(0.0, 0.0), rotation=0.0)]

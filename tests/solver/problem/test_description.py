@@ -15,8 +15,8 @@ def describe(**changes) -> Description:
 
 
 def test_what_it_knows():
-    assert describe().elastic
-    assert not describe(material=CONDUCTOR).elastic
+    assert describe().physics.name == "elasticity"
+    assert describe(material=CONDUCTOR).physics.name == "heat conduction"
     family = describe(m=3).family()
     assert (family.m, family.spacing) == (3, 0.1)
 
