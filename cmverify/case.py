@@ -73,6 +73,44 @@ class FieldSet:
 
 
 @dataclass(frozen=True)
+class Stage:
+    """What a body looks like at one moment of a run, for the row of pictures of an experiment.
+
+    Attributes
+    ----------
+    label : str
+        Such as "u* = 0.33 mm".
+    at : (2,) array
+        Where the moment lies in the first line plot of the measurement.
+    values : (N,) array
+        One scalar a particle, such as damage; NaN where particles came loose.
+    """
+
+    label: str
+    at: Array
+    values: Array
+
+
+@dataclass(frozen=True)
+class Stages:
+    """Stages of one run, drawn in a row beside the first line plot.
+
+    Attributes
+    ----------
+    quantity : str
+        What the values are, such as "damage".
+    points : (N, 2) array
+    spacing : float
+    stages : tuple of Stage
+    """
+
+    quantity: str
+    points: Array
+    spacing: float
+    stages: tuple[Stage, ...]
+
+
+@dataclass(frozen=True)
 class Curve:
     """Computed values along a line, (M,), beside the reference.
 
@@ -126,7 +164,7 @@ class Measurement:
         Wall seconds by stage ("setup", "solve", ...), JIT compilation excluded.
     statistics : mapping
         Whatever else is worth a column: iterations, residual, bonds, method chosen.
-    fields, lines
+    fields, lines, stages
         What the report draws; may be left out.
     """
 
@@ -136,6 +174,7 @@ class Measurement:
     statistics: Mapping[str, float | int | str] = field(default_factory=dict)
     fields: FieldSet | None = None
     lines: tuple[LinePlot, ...] = ()
+    stages: Stages | None = None
 
     @property
     def total_seconds(self) -> float:

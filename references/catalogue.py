@@ -2,9 +2,11 @@
 
 from references.generators import (
     MATERIALS,
+    compact_tension_by_pins,
     crack_tip_samples,
     heated_disc_samples,
     kink_factors,
+    notched_plate,
     pulled_plate_with_hole,
     square_modes,
     stress_intensity_table,
@@ -42,7 +44,7 @@ def _intensities(geometry: str, ratios: list[float], citation: str) -> Reference
             "geometry": geometry,
             "ratios": ratios,
             "materials": list(MATERIALS),
-            "elements": 24,
+            "elements": 20,
         },
         spot={"materials": ["anisotropic"], "ratios": ratios[1:2]},
         axis="ratios",
@@ -112,6 +114,26 @@ def catalogue() -> dict[str, Reference]:
                 {"material": material, "half_width": 4.0, "size": 0.01},
             )
             for material in ("isotropic", "bone", "anisotropic")
+        ),
+        Reference(
+            "notched-plate",
+            "Stiffness of the notched plate with a hole, rims held or rigid pins that turn (N/m²)",
+            _PAPER + ", Fig. 21",
+            notched_plate,
+            {"unit": 5e-3, "young": 5.98e9, "poisson": 0.221, "size": 0.08},
+        ),
+        Reference(
+            "compact-tension-pins",
+            "Compact tension of cortical bone between rigid pins that turn: force and K a metre",
+            _PAPER + ", Sect. 3.1.2; ASTM E399 (proportions)",
+            compact_tension_by_pins,
+            {
+                "material": "bone",
+                "degrees": [0.0, 45.0, 60.0, 90.0],
+                "width": 25.8e-3,
+                "ratio": 0.36,
+                "elements": 20,
+            },
         ),
     ]
     return {entry.name: entry for entry in entries}

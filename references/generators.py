@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from references.analytic.lekhnitskii import crack_tip_displacement
+from references.analytic.voigt import isotropic_voigt, turned_axes
 from references.fem.conduction import steady_conduction
 from references.fem.cracked_plates import centre_crack, compact_tension, edge_crack
 from references.fem.elasticity import solve_elasticity
@@ -14,6 +15,7 @@ from references.fem.kinks import kink_matrix, kink_mesh
 from references.fem.mesh import Mesh, crack_tip_disc, disc, rectangle
 from references.fem.mesh_record import MeshRecord
 from references.fem.modes import in_plane_modes
+from references.fem.pinned import pulled_by_pins
 from references.lattice.blocks import BlockLattice, TetrachiralCell, cell_voigt, paper_cell
 from references.provenance import Generated
 
@@ -274,5 +276,77 @@ def pulled_plate_with_hole(material: str, half_width: float, size: float) -> Gen
             "section_stress": _difference(stress, stress_coarse) / 3,
         },
         meshes,
+        2,
+    )
+
+
+def notched_plate(unit: float, young: float, poisson: float, size: float) -> Generated:
+    """Stiffness of the notched plate with a hole (Fig. 21), N/m² per unit thickness.
+
+    Row by row: rims that do not turn, the upper one free to slide; rigid pins that turn and do not
+    slide (both would leave the plate free to swing about the lower pin).
+    """
+    voigt = isotropic_voigt(young, poisson)
+    centres = ((-2.5 * unit, -8 * unit), (-2.5 * unit, 8 * unit))
+    holes = [(*centres[0], unit), (*centres[1], unit), (0.8 * unit, -1.8 * unit, 2 * unit)]
+    crack = ((-6.5 * unit, unit), (-4.5 * unit, unit))
+    meshes, found = [], []
+    for h in (size, 2 * size):
+        mesh = rectangle(
+            13 * unit, 24 * unit, 8 * h * unit, holes, [crack], 0.1 * h * unit, h * unit, 0.3
+        )
+        meshes.append(mesh)
+        found.append(
+            [
+                pulled_by_pins(mesh, voigt, centres, turning, not turning).stiffness
+                for turning in (False, True)
+            ]
+        )
+    fine, coarse = np.array(found)
+    return Generated(
+        {"turning": np.array([0.0, 1.0]), "stiffness": fine},
+        {"turning": 0.0, "stiffness": _difference(fine, coarse) / 3},
+        tuple(meshes),
+        2,
+    )
+
+
+def compact_tension_by_pins(
+    material: str, degrees: Sequence[float], width: float, ratio: float, elements: int
+) -> Generated:
+    """Compact-tension specimen between rigid pins that turn, with the material's axis turned.
+
+    Pins do not slide: the specimen could swing.
+
+    Per unit displacement of the upper pin and unit thickness: force (N/m²), K_I, K_II (Pa/√m).
+    """
+    shift, radius, offset = -0.375 * width, 0.125 * width, 0.275 * width
+    centres = ((shift, -offset), (shift, offset))
+    tip = (ratio * width + shift, 0.0)
+    meshes, found = [], []
+    for count in (elements, elements // 2):
+        mesh = rectangle(
+            1.25 * width, 1.2 * width, 1.25 * width / count,
+            holes=[(*centre, radius) for centre in centres],
+            cracks=[((-0.625 * width, 0.0), tip)],
+            tip_size=ratio * width / (100 * count),
+            hole_size=2 * radius / count,
+        )  # fmt: skip
+        meshes.append(mesh)
+        rows = []
+        for angle in degrees:
+            voigt = turned_axes(1e9 * MATERIALS[material], -np.radians(angle))
+            pulled = pulled_by_pins(mesh, voigt, centres, sliding=False)
+            rows.append([pulled.stiffness, *pulled.intensities(tip, 0.0, 0.15 * width)])
+        found.append(np.array(rows))
+    fine, coarse = found
+    names = ("stiffness", "KI", "KII")
+    scale = np.abs(fine).max(axis=0)
+    scale[2] = scale[1]
+    error = np.abs(fine - coarse).max(axis=0) / scale / 3
+    return Generated(
+        {"degrees": np.array(degrees, dtype=float)} | dict(zip(names, fine.T, strict=True)),
+        {"degrees": 0.0} | dict(zip(names, error.tolist(), strict=True)),
+        tuple(meshes),
         2,
     )

@@ -132,6 +132,7 @@ def _solvers(rows: Sequence[Row]) -> str:
 
 def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture]:
     from cmverify.report import figures
+    from cmverify.report.stages import stages_figure
 
     case, pictures = result.case, list[Picture]()
     curves = [p for p in points if p.error >= 0.0]
@@ -174,6 +175,11 @@ def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture
         alt = f"Maps of {key}: computed, reference and their difference; {where}."
         figure = figures.field_panels(fields, item, case.length)
         pictures.append(Picture.drawn(f"field-{key}", "png", figure, caption, alt, wide=True))
+    if featured[finest].stages is not None:
+        caption = f"The crack's stages beside the curve: {where}."
+        alt = f"Maps of {featured[finest].stages.quantity} at marked points of the curve; {where}."
+        figure = stages_figure(featured[finest])
+        pictures.append(Picture.drawn("stages", "png", figure, caption, alt, wide=True))
     for index, (line, series) in enumerate(figures.lines_of(featured), 1):
         title = mathtext(line.title)
         caption = f"{title}. {_capital(where)}."

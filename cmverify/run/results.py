@@ -22,7 +22,17 @@ from typing import Any
 
 import numpy as np
 
-from cmverify.case import Curve, Failed, Field, FieldSet, LinePlot, Measurement, Outcome
+from cmverify.case import (
+    Curve,
+    Failed,
+    Field,
+    FieldSet,
+    LinePlot,
+    Measurement,
+    Outcome,
+    Stage,
+    Stages,
+)
 
 FORMAT = 2
 # Files that decide what is measured: code and stored references.
@@ -215,6 +225,15 @@ def _describe(m: Measurement, arrays: dict[str, np.ndarray]) -> dict[str, Any]:
         for key, item in m.fields.items.items():
             data["fields"]["items"][key] = {"label": item.label, "unit": item.unit}
             arrays[f"{key}"], arrays[f"{key}_reference"] = item.computed, item.reference
+    if m.stages is not None:
+        arrays["stage_points"] = m.stages.points
+        data["stages"] = {
+            "quantity": m.stages.quantity,
+            "spacing": m.stages.spacing,
+            "labels": [stage.label for stage in m.stages.stages],
+        }
+        for k, stage in enumerate(m.stages.stages):
+            arrays[f"stage{k}_at"], arrays[f"stage{k}_values"] = stage.at, stage.values
     data["lines"] = []
     for i, line in enumerate(m.lines):
         entry = {f.name: getattr(line, f.name) for f in fields_of(line) if f.name != "curves"}
@@ -235,6 +254,18 @@ def _restore(data: dict[str, Any], arrays: dict[str, Any]) -> Measurement:
         }
         spacing, triangles = data["fields"]["spacing"], arrays.get("triangles")
         fields = FieldSet(arrays["points"], items, spacing, triangles)
+    stages = None
+    if "stages" in data:
+        entry = data["stages"]
+        stages = Stages(
+            entry["quantity"],
+            arrays["stage_points"],
+            entry["spacing"],
+            tuple(
+                Stage(label, arrays[f"stage{k}_at"], arrays[f"stage{k}_values"])
+                for k, label in enumerate(entry["labels"])
+            ),
+        )
     lines = []
     for i, entry in enumerate(data["lines"]):
         curves = []
@@ -249,4 +280,5 @@ def _restore(data: dict[str, Any], arrays: dict[str, Any]) -> Measurement:
         statistics=data["statistics"],
         fields=fields,
         lines=tuple(lines),
+        stages=stages,
     )

@@ -68,9 +68,13 @@ def grow(
         negative bond stiffness.
     batch : int, optional
         Most bonds to break between two equilibria (ties are broken together). By default a fifth
-        of what a straight cut breaks per cell of its length: 22 at m = 5. Under a fixed load it
-        makes no difference to loads and paths; a load that follows the crack must overload all
-        of a batch and is the higher for larger ones.
+        of what a straight cut breaks per cell of its length: 22 at m = 5. Where a crack grows from
+        a tip and the load holds still, a few more or fewer make no difference to loads and paths.
+        Where it nucleates or runs brutally the batch is part of the model: small ones follow a row
+        of the lattice, at G a length; breaking all that is overloaded at once (a batch larger than
+        the body has bonds, the paper's way) takes in a wider band and bends sooner. Say which one
+        a result was found with. A load that follows the crack must overload all of a batch and is
+        the higher for larger ones.
     tolerance : float
         Relative residual of every equilibrium.
     max_iterations : int
@@ -102,7 +106,11 @@ def grow(
     Notes
     -----
     A part that comes loose is set aside (`Growth.loose`); if a load acts on it, the run ends and
-    says so in `Growth.reason`.
+    says so in `Growth.reason`. A run also ends when the unit load strains the body no more (it has
+    parted), or when the force falls below `Programme.least_force` of its peak.
+
+    A scene that is its own mirror image breaks mirror-symmetrically, whatever the batch: bonds are
+    parted into batches only where there is a gap wider than the solver's noise.
 
     Examples
     --------

@@ -1,0 +1,157 @@
+"""Experiments are led alike: a run, its stages, and what every run of them is judged by."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from time import perf_counter, process_time
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cmverify.case import Array, Stage, Stages
+
+if TYPE_CHECKING:
+    from solver import Scene
+    from solver.fracture import Growth, Programme
+
+#: What has been dissipated at the stages that are drawn, relative to the end.
+SHARES = (0.05, 0.35, 0.7, 1.0)
+# A moment is kept when this much more has been dissipated than at the last one.
+_GROWTH = 1.15
+
+DESCRIPTIONS = {
+    "balance": "work − stored − dissipated − excess, relative to the work",
+    "undercut": "share of G × crack length that broken bonds have not dissipated",
+    "cost ratio": "dissipated energy over G × crack length: how wide the band of broken bonds is",
+}
+
+
+@dataclass
+class Moment:
+    """A state within a run."""
+
+    load_factor: float
+    force: float
+    dissipated: float
+    damage: Array
+
+
+@dataclass
+class Led:
+    """A run and what was kept of it on the way."""
+
+    run: Growth
+    moments: list[Moment]
+    seconds: dict[str, float] = field(default_factory=dict)
+    statistics: dict[str, float | int | str] = field(default_factory=dict)
+
+    @property
+    def balance(self) -> float:
+        """Largest imbalance relative to the work."""
+        h = self.run.history
+        return float(np.abs(h.imbalance).max() / max(h.work.max(), 1e-300))
+
+    @property
+    def length(self) -> float:
+        """Length of all that has cracked, m: paths and branches."""
+        return float(sum(path.length for path in self.run.paths))
+
+    def stages(self, label: Callable[[float], str], displacement: float, force: float) -> Stages:
+        """Stages at `SHARES` of what was dissipated, marked on the load curve.
+
+        Parameters
+        ----------
+        label : callable
+            Load factor → what is written over the picture.
+        displacement, force : float
+            Abscissa per load factor and ordinate per conjugate force of the curve.
+        """
+        spent = np.array([moment.dissipated for moment in self.moments])
+        chosen = [int(np.argmin(np.abs(spent - share * spent[-1]))) for share in SHARES]
+        found = [self.moments[k] for k in dict.fromkeys(chosen)]
+        lattice = self.run.bonds.lattice
+        return Stages(
+            "damage",
+            lattice.points,
+            lattice.spacing,
+            tuple(
+                Stage(
+                    label(m.load_factor),
+                    np.array([displacement * m.load_factor, force * m.force]),
+                    m.damage,
+                )
+                for m in found
+            ),
+        )
+
+
+def lead(
+    scene: Scene,
+    toughness: Any,
+    programme: Programme,
+    *,
+    until: Callable[[Growth], bool] | None = None,
+    **options: Any,
+) -> Led:
+    """Run `solver.fracture.grow` and keep moments as the crack grows."""
+    from solver import fracture
+
+    moments: list[Moment] = []
+
+    def keep(run: Growth) -> None:
+        damage = run.damage
+        damage[run.loose] = np.nan
+        row = run.ledger.row(run.load_factor)
+        moments.append(Moment(run.load_factor, row["force"], row["dissipated"], damage))
+
+    def watch(run: Growth) -> bool:
+        spent = run.ledger.dissipated
+        if spent > 0 and (not moments or spent > _GROWTH * moments[-1].dissipated):
+            keep(run)
+        return until is not None and until(run)
+
+    begun, cpu = perf_counter(), process_time()
+    run = fracture.grow(scene, toughness, programme, until=watch, **options)
+    keep(run)
+    steps = run.steps
+    solves = len(steps)
+    return Led(
+        run,
+        moments,
+        {"solve": perf_counter() - begun},
+        {
+            "solves": solves,
+            "iterations": int(steps["iterations"].sum()),
+            "bonds a solve": round(len(run.broken_bonds) / solves, 1),
+            "CPU s a solve": round((process_time() - cpu) / solves, 3),
+            "ended": run.reason,
+        },
+    )
+
+
+def events(run: Growth, least: float) -> list[tuple[float, float]]:
+    """Loads at which a crack jumped: (load factor, energy dissipated at once) in their order.
+
+    Parameters
+    ----------
+    run : Growth
+    least : float
+        Smallest energy that counts as a jump, J per unit thickness.
+    """
+    h = run.history
+    jump = np.diff(h.dissipated, prepend=0.0)
+    return [(float(h.load_factor[k]), float(jump[k])) for k in np.flatnonzero(jump >= least)]
+
+
+def unmirrored(run: Growth, axis: Sequence[float] = (0.0, 0.0)) -> int:
+    """Broken bonds whose image in the line x = axis[0] is whole."""
+    lattice, bonds = run.bonds.lattice, run.bonds
+    _, p, q = bonds.ends(run.broken_bonds)
+    key = np.rint(2 * (lattice.points - lattice.points.min(axis=0)) / lattice.spacing).astype(int)
+    width = int(np.rint(4 * (axis[0] - lattice.points[:, 0].min()) / lattice.spacing))
+    number = {tuple(k): i for i, k in enumerate(key.tolist())}
+    image = np.array([number.get((width - kx, ky), -1) for kx, ky in key.tolist()])
+    broken = {frozenset(pair) for pair in zip(p.tolist(), q.tolist(), strict=True)}
+    mirrored = {frozenset(pair) for pair in zip(image[p].tolist(), image[q].tolist(), strict=True)}
+    return len(broken - mirrored)
