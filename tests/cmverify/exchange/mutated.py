@@ -178,6 +178,7 @@ def _likely(value: Any, chance: random.Random) -> Any:
     if isinstance(value, str):
         known = next((words for words in _WORDS if value in words), _FORMULAS)
         return chance.choice(known)
+    value = max(min(value, 1e300), -1e300)  # whole numbers may be longer than that
     return chance.choice([0.0, -value, 0.3 * value, 3.0 * value, value + 1, 1e12 * value, value])
 
 
