@@ -102,13 +102,8 @@ class Support:
     @property
     def given(self) -> set[str]:
         """Names of the values that are given."""
-        names = {item.name for item in fields(self)} - {
-            "select",
-            "rigid",
-            "centre",
-            "tied",
-            "nodes",
-        }
+        how = {"select", "rigid", "centre", "tied", "nodes"}
+        names = {item.name for item in fields(self)} - how
         return {name for name in names if getattr(self, name) is not None}
 
     @property

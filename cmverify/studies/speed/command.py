@@ -11,6 +11,8 @@ import typer
 from cmverify.case import Level
 
 _RESOLUTION = {Level.QUICK: 60, Level.STANDARD: 120, Level.PAPER: 120}
+#: Cells along the side of the square whose modes are sought.
+_MODES = {Level.QUICK: 28, Level.STANDARD: 112, Level.PAPER: 112}
 _LADDER = {
     Level.QUICK: (30, 60, 120),
     Level.STANDARD: (30, 60, 120, 240),
@@ -35,7 +37,7 @@ def speed(
 
     from cmverify.judge.verdict import Verdict
     from cmverify.run.environment import describe
-    from cmverify.studies.speed import measure, verdicts
+    from cmverify.studies.speed import measure, modes, verdicts
 
     console = Console()
     resolution = _RESOLUTION[level]
@@ -57,6 +59,11 @@ def speed(
             "Whole solve",
             lambda: measure.solvers(resolution),
             verdicts.of_solvers if judged else None,
+        ),
+        (
+            "Natural modes",
+            lambda: modes.compare(_MODES[level]),
+            verdicts.of_modes if judged else None,
         ),
     )
     for title, run, judge in studies:

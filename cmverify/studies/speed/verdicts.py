@@ -45,6 +45,18 @@ def of_solvers(rows: list[Timing]) -> list[Verdict]:
     ]
 
 
+def of_modes(rows: list[Timing]) -> list[Verdict]:
+    """1/30 of the CPU seconds of SciPy's shift and invert, and no mode missed or unconverged."""
+    ours = rows[0].values
+    found = [_at_most(f"{rows[0].name}: largest residual", ours["residual"], 1e-8)]
+    found += [
+        _at_least(f"{row.name}: CPU seconds ÷ ours", row.values["slower"], 30.0)
+        for row in rows
+        if row.name.endswith("SuperLU")
+    ]
+    return found
+
+
 def of_growth(rows: list[Timing]) -> list[Verdict]:
     """Twelve iterations at every spacing; a million particles in 4 GB at 1.5 times the cost."""
     found = [_at_most(f"{row.name}: iterations", row.values["iterations"], 12) for row in rows]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cmverify.studies.speed import measure, verdicts
+from cmverify.studies.speed import measure, modes, verdicts
 from cmverify.studies.speed.measure import Timing
 
 
@@ -71,6 +71,11 @@ def test_growth_reports_flat_iterations_and_a_falling_error() -> None:
             Timing("MKL PARDISO", {"slower": 29.7}),
         ),
         (
+            verdicts.of_modes,
+            Timing("eigsh, SuperLU", {"slower": 30.3, "residual": 0.9e-8}),
+            Timing("eigsh, SuperLU", {"slower": 29.7, "residual": 1.1e-8}),
+        ),
+        (
             verdicts.of_growth,
             Timing("a/60", {"iterations": 12, "us_per_particle": 1.0, "peak_gb": 1.0}),
             Timing("a/60", {"iterations": 13, "us_per_particle": 1.0, "peak_gb": 1.0}),
@@ -94,3 +99,14 @@ def test_a_million_particles_are_held_to_cost_and_memory() -> None:
 def test_not_a_number_fails() -> None:
     row = Timing("MKL PARDISO", {"slower": float("nan")})
     assert not verdicts.of_solvers([row])[0].passed
+
+
+def test_modes_of_others_are_ours() -> None:
+    """The same pencil on both sides; copies that a Lanczos method loses are counted."""
+    ours, *others = modes.compare(14)
+    assert ours.values["residual"] < 1e-8
+    assert "SciPy eigsh, SuperLU" in [row.name for row in others]
+    for row in others:
+        assert row.values["slower"] > 0
+        assert 0 <= row.values["amiss"] <= modes.COUNT
+    assert others[0].values["residual"] < 1e-6
