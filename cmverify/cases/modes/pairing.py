@@ -76,7 +76,7 @@ def pair(
         errors[group] = frequencies[chosen] / reference[group] - 1
         # Cosines of the angles between the two spaces.
         mac[group] = np.linalg.svd(block, compute_uv=False).min() ** 2
-        aligned[group] = np.einsum("kl,knd->lnd", block, shapes[chosen]) * (size[group] / 1.0)[
-            :, None, None
-        ]
+        aligned[group] = (
+            np.einsum("kl,knd->lnd", block, shapes[chosen]) * (size[group] / 1.0)[:, None, None]
+        )
     return Pairing(errors, mac, order, aligned)

@@ -118,7 +118,11 @@ def bond(plate: Plate, n: int, stiffer: float = 1.0) -> Measurement:
         statistics={k: found.statistics[k] for k in ("particles", "bonds", "method", "iterations")},
         fields=FieldSet(
             points,
-            {"mode-1": Field("$|u|$, mode 1", "1", size[0] / size[1].max(), size[1] / size[1].max())},
+            {
+                "mode-1": Field(
+                    "$|u|$, mode 1", "1", size[0] / size[1].max(), size[1] / size[1].max()
+                )
+            },
             spacing=1.0 / n,
         ),
     )
@@ -171,7 +175,10 @@ CASES = (
         ),
         methods=tuple(
             Method(
-                f"bond/{plate.name}", "bond", partial(bond, plate), _ladder(plate),
+                f"bond/{plate.name}",
+                "bond",
+                partial(bond, plate),
+                _ladder(plate),
                 partial(_warm, plate),
             )
             for plate in PLATES

@@ -131,9 +131,7 @@ def bond(
     with stopwatch(seconds, "pairing"):
         inside = np.abs(x).max(axis=1) < 0.5 * known.side
         shapes, mass = found.shapes[:, inside], found.mass[inside]
-        pairs = pair(
-            found.frequencies, shapes, mass, known.frequencies, known.solid.at(x[inside])
-        )
+        pairs = pair(found.frequencies, shapes, mass, known.frequencies, known.solid.at(x[inside]))
     judged = slice(0, JUDGED)
     blocks = found.frequencies[pairs.order] / known.blocks - 1
     return Measurement(
@@ -307,7 +305,9 @@ CASES = (
                 order=OrderBand(1.8, 2.6, since=28),
                 source="edge particles carry the mass of their strip: as for whole cells",
             ),
-            Check("bond/δ=5a/4", "frequency", {67: 0.0055}, source="measured, 1.4 times the largest"),
+            Check(
+                "bond/δ=5a/4", "frequency", {67: 0.0055}, source="measured, 1.4 times the largest"
+            ),
             Check(
                 "block lattice",
                 "frequency",
