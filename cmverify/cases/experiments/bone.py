@@ -32,6 +32,7 @@ from .running import DESCRIPTIONS, Led, lead
 
 if TYPE_CHECKING:
     from solver import Scene
+    from solver.bonds import Surface
 
 WIDTH, RATIO, THICKNESS = 25.8e-3, 0.36, 1e-3
 VOIGT = 1e9 * np.array([[25.0, 5.89, 0.0], [5.89, 16.25, 0.0], [0.0, 0.0, 6.65]])
@@ -40,6 +41,9 @@ UNIT = 0.3e-3 * 5  # a spacing of 0.3 mm is unit/5
 SHIFT, RADIUS, OFFSET = -0.375 * WIDTH, 0.125 * WIDTH, 0.275 * WIDTH
 TIP = RATIO * WIDTH + SHIFT
 MOVE = 1e-3  # m: load factors are millimetres
+STEP = (
+    5e-4  # mm, our choice (a three-hundredth of the load at the start); twenty times that if coarse
+)
 THEORY, PAPER = 98.0, 96.0  # N
 SOURCE = "scikit-fem on the same specimen (references: compact-tension-pins)"
 
@@ -49,7 +53,7 @@ class Specimen:
     """Fibres at `degrees` to the crack; `toughness` multiplies both energies (for tests)."""
 
     degrees: float = 0.0
-    surface: str = "volume"
+    surface: Surface = "volume"
     toughness: float = 1.0
 
     @property
@@ -70,21 +74,24 @@ class Specimen:
                 Support.pin(pins[1], (SHIFT, OFFSET), displacement=(0.0, MOVE)),
             ],
             cracks=[Crack((-0.65 * WIDTH, 0.0), (TIP, 0.0))], loose="drop",
+            # The crack runs between two rows.
+            phase=(0.0, 0.0),
         )  # fmt: skip
         return scene, pins
 
     def led(self, n: int) -> Led:
-        """The run until the force has fallen to a fifth of its peak."""
+        """The run until the force has fallen to a fifth of its peak (coarsest: to 0.6)."""
         from solver import Programme, Toughness
 
         scene, pins = self.scene(n)
         toughness = Toughness(
             self.toughness * ACROSS, self.toughness * ALONG, LOBES, axis=self.angle
         )
-        return lead(
-            scene, toughness, Programme(stop=2.0, increment=5e-4, least_force=0.2), no_fail=pins,
-            max_solves=1_500,
-        )  # fmt: skip
+        coarse = n <= 2
+        programme = Programme(
+            stop=2.0, increment=STEP * (20 if coarse else 1), least_force=0.6 if coarse else 0.2
+        )
+        return lead(scene, toughness, programme, no_fail=pins, max_solves=1_500)
 
 
 def reference(degrees: float) -> tuple[float, float, float]:
@@ -159,7 +166,7 @@ def _warm() -> None:
     Specimen().led(1)
 
 
-def _method(degrees: float, surface: str = "volume", **ladder: tuple[int, ...]) -> Method:
+def _method(degrees: float, surface: Surface = "volume", **ladder: tuple[int, ...]) -> Method:
     levels = {level: ladder.get(level.value, ()) for level in Level}
     run: Callable[[int], Measurement] = partial(bond, Specimen(degrees, surface))
     name = f"ζ = {degrees:g}°" + (", extrapolated" if surface == "extrapolated" else "")
@@ -184,7 +191,7 @@ CASES = (
         "elements give; along the fibres the crack runs straight, else it turns towards them.",
         methods=_ALL,
         checks=(
-            *(Check(m.name, "peak", {2: 0.1, 5: 0.05}, source=SOURCE)
+            *(Check(m.name, "peak", {5: 0.05}, source=SOURCE)
               for m in (_STRAIGHT, _STRAIGHT_TOO)),
             *(Check(m.name, "straying", {2: 0.03}, source="Sect. 3.1.2: almost collinear")
               for m in (_STRAIGHT, _STRAIGHT_TOO)),
