@@ -174,6 +174,7 @@ def bond(
             "upper face": relative_l2(solution.displacement[face], displacement[face]),
             **stress_ahead(problem, points, lambda near: stress[near], n),
             **found,
+            "iterations": float(solution.statistics.iterations),
         },
         seconds=seconds,
         statistics=adapters.solver_statistics(solution.statistics),

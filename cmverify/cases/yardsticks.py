@@ -7,17 +7,29 @@ import math
 import numpy as np
 
 from cmverify.case import Case, Check, Level, Measurement, Method
+from cmverify.cases.common import bond_energies
 from cmverify.judge import convergence, norms
 
 SIZES = np.array([1 / 10, 1 / 20, 1 / 40])
 
 
 def measure(_: int) -> Measurement:
-    """Errors of 1 %, orders of 2, a limit of 3, and NaN that has to stay NaN."""
+    """Errors of 1 %, energies of waves, orders of 2, a limit of 3, and NaN that has to stay NaN."""
+    from solver import ElasticTensor, Family
+    from solver.material import ElasticModuli, calibrate
+
     values = np.random.default_rng(2022).normal(size=(50, 2))
     errors = 0.3 * SIZES**2
     limit = convergence.richardson(SIZES, 3.0 + errors)
     spoilt = [norms.relative_l2([1.0, math.nan], [1.0, 2.0]), norms.worst([0.1, math.nan, 0.2])]
+    # A solid whose every wave stores energy, and one with bonds that push where they should pull.
+    family, solid = Family(3), ElasticTensor.isotropic(1.0, 0.2)
+    stable = calibrate(family, solid, "lattice")
+    assert isinstance(stable, ElasticModuli)
+    unstable = ElasticModuli(-stable.normal, stable.shear)
+    waves = [np.array([1.0, 0.3]), np.array([0.0, 0.0]), np.array([np.pi, np.pi])]
+    misjudged = [bond_energies.is_unstable(family, stable, k) for k in waves]
+    misjudged += [not bond_energies.is_unstable(family, unstable, k) for k in waves]
     fit = convergence.fitted_order(SIZES, errors)
     return Measurement(
         0,
@@ -28,6 +40,7 @@ def measure(_: int) -> Measurement:
             "fitted order": math.nan if fit is None else abs(fit.order - 2.0),
             "limit": abs(limit.value / 3.0 - 1.0),
             "limit's order": abs(limit.order - 2.0),
+            "waves misjudged": float(sum(misjudged)),
             "numbers made of NaN": float(sum(not math.isnan(s) for s in spoilt)),
         },
     )
@@ -40,8 +53,12 @@ QUANTITIES = {
     "fitted order": "the order fitted to them",
     "limit": "Richardson's limit of values with these errors",
     "limit's order": "the order that it observes",
+    "waves misjudged": "waves of a stable solid that the bonds' energies call unstable, and the "
+    "reverse",
     "numbers made of NaN": "norms that are numbers although one value is none",
 }
+
+COUNTED = ("waves misjudged", "numbers made of NaN")
 
 CASES = (
     Case(
@@ -55,9 +72,9 @@ CASES = (
             *(
                 Check("judges", q, {1: 1e-9}, source="arithmetic", exact=True)
                 for q in QUANTITIES
-                if q != "numbers made of NaN"
+                if q not in COUNTED
             ),
-            Check("judges", "numbers made of NaN", equals={1: 0.0}, source="arithmetic"),
+            *(Check("judges", q, equals={1: 0.0}, source="arithmetic") for q in COUNTED),
         ),
         quantities=QUANTITIES,
         primary="one per cent",

@@ -67,7 +67,8 @@ def one_nan(value: Any) -> Any:
     """An array with one entry that is no number (a number becomes none)."""
     if np.ndim(value) == 0:
         return float("nan")
-    spoilt = np.array(value, dtype=float)
+    # In C order, so that the flat view is one and not a copy.
+    spoilt = np.array(value, dtype=float, order="C")
     spoilt.reshape(-1)[spoilt.size // 2] = np.nan
     return spoilt
 

@@ -79,6 +79,7 @@ def test_changes_change_what_they_say():
     pair = (1.0, np.array([2.0]))
     assert scaled(2.0)(lambda: pair)()[1] == [4.0]
     assert np.isnan(one_nan(np.ones((3, 2)))).sum() == 1
+    assert np.isnan(one_nan(np.moveaxis(np.ones((3, 2, 4)), 2, 0))).sum() == 1
     assert np.isnan(one_nan(1.0))
     np.testing.assert_array_equal(swapped()(np.array([[1.0, 2.0]])), [[2.0, 1.0]])
     from cmverify.case import Curve
