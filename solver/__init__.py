@@ -4,7 +4,7 @@ Scene -> Lattice + Family -> Moduli + Bonds -> Operator -> statics -> Solution -
 """
 
 from . import fracture, recovery
-from .analyses import modes, transient
+from .analyses import modes, transient, waves
 from .errors import (
     CalibrationError,
     ConvergenceError,
@@ -63,4 +63,5 @@ __all__ = [
     "recovery",
     "rectangle",
     "transient",
+    "waves",
 ]
