@@ -4,7 +4,7 @@ Scene -> Lattice + Family -> Moduli + Bonds -> Operator -> statics -> Solution -
 """
 
 from . import fracture, recovery
-from .analyses import modes
+from .analyses import modes, transient, waves
 from .errors import (
     CalibrationError,
     ConvergenceError,
@@ -62,4 +62,6 @@ __all__ = [
     "polygon",
     "recovery",
     "rectangle",
+    "transient",
+    "waves",
 ]

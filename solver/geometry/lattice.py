@@ -26,10 +26,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 from ..arrays import Array, Indices, Mask
 from ..errors import SceneError
@@ -200,6 +202,19 @@ class Lattice:
             return self.centred.edge_distance
         return self.region.edge_distance(self.points[:, 0], self.points[:, 1])
 
+    @cached_property
+    def tree(self) -> KDTree:
+        """The centres, for finding the nearest."""
+        return KDTree(self.points)
+
+    @cached_property
+    def known(self) -> dict[tuple[str, int], tuple[Any, Any]]:
+        """What has been found out about parts of the plane, by the id of the part.
+
+        With the part itself, so that its id stays its own. What varies in time asks every step.
+        """
+        return {}
+
     def number(self) -> NDArray[np.int64]:
         """Particle number of every cell of the padded grid, −1 where there is none."""
         numbers = np.full(self.shape, -1, dtype=np.int64)
@@ -218,6 +233,16 @@ def select(lattice: Lattice, where: Where) -> Mask:
 
     Both in the user's coordinates.
     """
+    key = "particles", id(where)
+    if key not in lattice.known:
+        found = _select(lattice, where)
+        found.setflags(write=False)
+        lattice.known[key] = where, found
+    selected: Mask = lattice.known[key][1]
+    return selected
+
+
+def _select(lattice: Lattice, where: Where) -> Mask:
     if isinstance(where, Region):
         near = lattice.centred
         there = (

@@ -39,6 +39,11 @@ def positive(operator: BondOperator, kind: str) -> BondOperator:
     return operator.companion() if kind == "indefinite" else operator
 
 
+def small(operator: BondOperator) -> bool:
+    """Whether block Jacobi needs less time than the set-up of two levels."""
+    return bool(operator.shape[0] < _TWO_LEVEL)
+
+
 def preconditioner(
     operator: BondOperator,
     kind: str,
@@ -65,8 +70,7 @@ def preconditioner(
         raise ValueError(
             f"unknown preconditioner {choice!r}; known: {', '.join(get_args(Preconditioner))}"
         )
-    small = operator.shape[0] < _TWO_LEVEL
-    if choice == "block-jacobi" or (choice == "auto" and small):
+    if choice == "block-jacobi" or (choice == "auto" and small(operator)):
         return BlockJacobi(positive(operator, kind))
     if isinstance(earlier, TwoLevel):
         return earlier.updated(positive(operator, kind))

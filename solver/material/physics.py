@@ -45,6 +45,8 @@ class Physics:
         Whether the energy of a pair carries |ξ| (Eq. 4), as it does not in conduction (Eq. 112).
     breakable : bool
         Whether bonds store an energy that can break them.
+    storage : str
+        What a scene says of the body for it to change in time: its density or heat capacity.
     """
 
     name: str
@@ -60,6 +62,7 @@ class Physics:
     missing: Mapping[int, str] = field(default_factory=dict)
     energy_by_length: bool = False
     breakable: bool = False
+    storage: str = ""
 
     def scales(self, spacing: float, components: int | None = None) -> Array:
         """What each unknown is multiplied by to enter the equations, (components,): 1 or Δx, m."""
@@ -96,6 +99,7 @@ ELASTICITY = Physics(
     },
     energy_by_length=True,
     breakable=True,
+    storage="density",
 )
 
 HEAT = Physics(
@@ -109,4 +113,5 @@ HEAT = Physics(
     motions=_level,
     motion_names=("level",),
     unheld="no temperature is prescribed on {place}: its level is undetermined",
+    storage="heat_capacity",
 )

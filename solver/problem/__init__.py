@@ -3,5 +3,6 @@
 from .conditions import Load, Support
 from .description import Description
 from .discretisation import Discretisation
+from .forcing import Forcing
 
-__all__ = ["Description", "Discretisation", "Load", "Support"]
+__all__ = ["Description", "Discretisation", "Forcing", "Load", "Support"]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,7 +19,32 @@ from ..material.physics import Physics
 # Points of a line load in every cell.
 _PER_CELL = 4
 
-Value = float | ArrayLike | Callable[[Array, Array], Any]
+Value = float | ArrayLike | Callable[..., Any]
+
+
+def in_time(value: Value | None) -> bool:
+    """Whether a value is a function of (x, y, t): one that needs a third argument.
+
+    A third argument with a default does not count: ``lambda x, y, k=k: …`` is common Python.
+    """
+    if not callable(value):
+        return False
+    try:
+        parameters = inspect.signature(value).parameters.values()
+    except (TypeError, ValueError):  # built-in functions that do not say
+        return False
+    places = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    needed = [p for p in parameters if p.kind in places and p.default is inspect.Parameter.empty]
+    return len(needed) == 3
+
+
+def at_time(value: Value, time: float) -> Value:
+    """The value as a function of (x, y) alone, at one time."""
+    if not in_time(value):
+        return value
+    assert callable(value)
+    function = value
+    return lambda x, y: function(x, y, time)
 
 
 def evaluate(value: Value, points: Array, components: int, what: str) -> Array:
@@ -26,8 +53,13 @@ def evaluate(value: Value, points: Array, components: int, what: str) -> Array:
     Raises
     ------
     SceneError
-        If the shape does not fit or a value is not finite.
+        If the shape does not fit, a value is not finite, or it depends on time.
     """
+    if in_time(value):
+        raise SceneError(
+            f"{what} is a function of (x, y, t), and statics knows no time: run it with "
+            f"solver.transient or solver.waves, or give a function of (x, y)"
+        )
     # What a function says where it is not defined is judged here, by name.
     with np.errstate(all="ignore"):
         raw = value(points[:, 0], points[:, 1]) if callable(value) else value
@@ -54,7 +86,8 @@ class Support:
     """Particles, or the body's very edge, on which unknowns are prescribed.
 
     Build one with `layer`, `where` or `edge`. Values are numbers, arrays (one row for each selected
-    particle, in the lattice's order) or functions of (x, y). What is not given stays free.
+    particle, in the lattice's order) or functions of (x, y), or of (x, y, t) where the analysis
+    has a time. What is not given stays free.
 
     Attributes
     ----------
@@ -105,6 +138,16 @@ class Support:
         how = {"select", "rigid", "centre", "tied", "nodes"}
         names = {item.name for item in fields(self)} - how
         return {name for name in names if getattr(self, name) is not None}
+
+    @property
+    def timed(self) -> bool:
+        """Whether a value depends on time."""
+        return any(in_time(getattr(self, name)) for name in self.given)
+
+    def at(self, time: float) -> Support:
+        """The support at one time, s."""
+        now: dict[str, Any] = {n: at_time(getattr(self, n), time) for n in self.given}
+        return replace(self, **now)
 
     @property
     def constrains(self) -> bool:
@@ -209,6 +252,15 @@ class Support:
         return found
 
 
+def _volumes(lattice: Lattice, within: Region | None) -> Array:
+    """`volumes`, remembered."""
+    key = "volumes", id(within)
+    if key not in lattice.known:
+        lattice.known[key] = within, volumes(lattice, within)
+    found: Array = lattice.known[key][1]
+    return found
+
+
 @dataclass(frozen=True)
 class Load:
     """Something that acts on the body, per unit volume or on its edges.
@@ -225,16 +277,51 @@ class Load:
         Of a load on edges: outline, its shift from the user's coordinates → quadrature.
     points : callable, optional
         Of a concentrated load: spacing → (places, what acts at each, (k, components)).
+    instant : callable, optional
+        Of a load that depends on time: time (s) → the load then.
     """
 
     kind: str
     density: Callable[[Lattice, bool], tuple[Mask, Array]] | None = None
     edge: Callable[[Outline, Point], Quadrature] | None = None
     points: Callable[[float], tuple[Array, Array]] | None = None
+    instant: Callable[[float], Load] | None = None
+
+    @property
+    def timed(self) -> bool:
+        """Whether the load depends on time."""
+        return self.instant is not None
+
+    def at(self, time: float) -> Load:
+        """The load at one time, s."""
+        return self if self.instant is None else self.instant(time)
+
+    @classmethod
+    def _of(
+        cls,
+        kind: str,
+        value: Value,
+        density: Callable[[Value, Lattice, bool], tuple[Mask, Array]] | None = None,
+        edge: Callable[[Value, Outline, Point], Quadrature] | None = None,
+        points: Callable[[Value, float], tuple[Array, Array]] | None = None,
+    ) -> Load:
+        """A load whose value may depend on time."""
+
+        def fixed(value: Value) -> Load:
+            return cls(
+                kind,
+                None if density is None else partial(density, value),
+                None if edge is None else partial(edge, value),
+                None if points is None else partial(points, value),
+            )
+
+        if in_time(value):
+            return replace(fixed(value), instant=lambda time: fixed(at_time(value, time)))
+        return fixed(value)
 
     @classmethod
     def _body(cls, kind: str, value: Value, components: int, where: Where | None) -> Load:
-        def density(lattice: Lattice, true_edges: bool) -> tuple[Mask, Array]:
+        def density(value: Value, lattice: Lattice, true_edges: bool) -> tuple[Mask, Array]:
             everywhere = np.ones(lattice.count, dtype=bool)
             mask = everywhere if where is None else select(lattice, where)
             volume = np.ones(lattice.count)
@@ -242,16 +329,16 @@ class Load:
                 # One value a particle goes with the particles that the region holds.
                 listed = not callable(value) and np.ndim(value) >= min(components, 2)
                 if isinstance(where, Region) and not listed:
-                    volume = volumes(lattice, where)
+                    volume = _volumes(lattice, where)
                     mask = volume > 0
                 else:
-                    volume = volumes(lattice)
+                    volume = _volumes(lattice, None)
             if not mask.any():
                 raise SceneError(f"a {kind} acts on no particle")
             acting = evaluate(value, lattice.places[mask], components, f"a body {kind}")
             return mask, acting * volume[mask, None]
 
-        return cls(kind, density)
+        return cls._of(kind, value, density)
 
     @classmethod
     def body_force(cls, force: Value, where: Where | None = None) -> Load:
@@ -305,28 +392,29 @@ class Load:
         length = float(np.hypot(*(last - first))) if first.shape == last.shape == (2,) else 0.0
         if not (np.isfinite(length) and length > 0):
             raise SceneError(f"a line load runs between two points, not {start}–{end}")
-        sample = density(*first[:, None]) if callable(density) else density
+        now = at_time(density, 0.0)
+        sample = now(*first[:, None]) if callable(now) else now
         components = 2 if np.size(sample) == 2 else 1
 
-        def points(spacing: float) -> tuple[Array, Array]:
+        def points(density: Value, spacing: float) -> tuple[Array, Array]:
             count = int(np.ceil(_PER_CELL * length / spacing))
             share = ((np.arange(count) + 0.5) / count)[:, None]
             places = first + share * (last - first)
             return places, evaluate(density, places, components, "a line load") * (length / count)
 
-        return cls("force" if components == 2 else "source", points=points)
+        return cls._of("force" if components == 2 else "source", density, points=points)
 
     @classmethod
     def traction(cls, traction: Value, start: Point, end: Point) -> Load:
         """Traction (t1, t2), Pa, on the straight part of the body's edge from `start` to `end`."""
 
-        def edge(outline: Outline, shift: Point) -> Quadrature:
+        def edge(traction: Value, outline: Outline, shift: Point) -> Quadrature:
             rule = Quadrature.between(outline, np.array(start), np.array(end), shift)
             if not len(rule):
                 raise SceneError(f"no edge of the body runs along {start}–{end}")
             return rule.carrying(evaluate(traction, rule.places, 2, "a traction"))
 
-        return cls("traction", edge=edge)
+        return cls._of("traction", traction, edge=edge)
 
     @classmethod
     def stress(cls, stress: Value, where: Where | None = None) -> Load:
@@ -339,21 +427,21 @@ class Load:
             The part of the edge that carries it; all of it by default. Faces of cracks never do.
         """
 
-        def edge(outline: Outline, shift: Point) -> Quadrature:
+        def edge(stress: Value, outline: Outline, shift: Point) -> Quadrature:
             rule = Quadrature.over(outline, where, shift)
             s11, s22, s12 = evaluate(stress, rule.places, 3, "a stress at the edge").T
             n1, n2 = rule.normals.T
             return rule.carrying(np.column_stack([s11 * n1 + s12 * n2, s12 * n1 + s22 * n2]))
 
-        return cls("traction", edge=edge)
+        return cls._of("traction", stress, edge=edge)
 
     @classmethod
     def flux(cls, flux: Value, where: Where | None = None) -> Load:
         """What a flux (q1, q2), W/m², carries into the body through its edges: −q·n."""
 
-        def edge(outline: Outline, shift: Point) -> Quadrature:
+        def edge(flux: Value, outline: Outline, shift: Point) -> Quadrature:
             rule = Quadrature.over(outline, where, shift)
             q = evaluate(flux, rule.places, 2, "a flux at the edge")
             return rule.carrying(-np.einsum("ki,ki->k", q, rule.normals)[:, None])
 
-        return cls("inflow", edge=edge)
+        return cls._of("inflow", flux, edge=edge)

@@ -6,9 +6,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from numbers import Real
-from typing import Literal
+from typing import Literal, Self
 
 from ..arrays import Mask
 from ..bonds import Surface, check_surface
@@ -65,6 +65,8 @@ class Description:
         aside (their fields are NaN, the rest is solved). A load on such a part is refused.
     density : float, optional
         ρ, kg/m³: statics needs none, whatever moves in time does.
+    heat_capacity : float, optional
+        Volumetric heat capacity, density times specific heat, J/(m³ K), of a transient.
 
     Raises
     ------
@@ -88,6 +90,7 @@ class Description:
     loose: Literal["refuse", "drop"] = "refuse"
     phase: tuple[float, float] | None = None
     density: float | None = None
+    heat_capacity: float | None = None
 
     def __post_init__(self) -> None:
         check_surface(self.surface)
@@ -109,11 +112,16 @@ class Description:
             value = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, Real):
                 raise SceneError(f"{name} must be a number, not {value!r}")
-        if self.density is not None:
-            given = self.density
+        for name, unit in (("density", "kg/m³"), ("heat_capacity", "J/(m³ K)")):
+            given = getattr(self, name)
+            if given is None:
+                continue
             real = isinstance(given, Real) and not isinstance(given, bool)
+            what = name.replace("_", " ")
             if not (real and 0.0 < given < float("inf")):
-                raise SceneError(f"the density must be positive (kg/m³), not {given!r}")
+                raise SceneError(f"the {what} must be positive ({unit}), not {given!r}")
+            if name != self.physics.storage:
+                raise SceneError(f"{self.physics.adjective} body has no {what}")
         for load in self.loads:
             if load.kind not in self.physics.loads:
                 raise SceneError(f"a {load.kind} does not act on {self.physics.adjective} body")
@@ -122,6 +130,22 @@ class Description:
     def physics(self) -> Physics:
         """What the scene is about, as its material says."""
         return self.material.physics
+
+    @property
+    def timed(self) -> bool:
+        """Whether a support or a load depends on time."""
+        supports, loads = (s.timed for s in self.supports), (load.timed for load in self.loads)
+        return any(supports) or any(loads)
+
+    def at(self, time: float) -> Self:
+        """The scene with its supports and loads as they are at one time, s."""
+        if not self.timed:
+            return self
+        return replace(
+            self,
+            supports=[support.at(time) for support in self.supports],
+            loads=[load.at(time) for load in self.loads],
+        )
 
     def density_for(self, what: str) -> float:
         """ρ, kg/m³, for an analysis that needs it.

@@ -8,7 +8,6 @@ from functools import cached_property
 from time import perf_counter
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from ..arrays import Array, Mask
 from ..bonds import Bonds
@@ -200,10 +199,14 @@ class Discretisation:
         """Whether single bonds are broken (cracks that were always there do not count)."""
         return self.scene.broken is not None
 
-    def right_hand_side(self) -> Array:
-        """Load of the active unknowns less what the prescribed ones exert, flattened."""
+    def right_hand_side(self, coupling: Array | None = None) -> Array:
+        """Load of the active unknowns less what the prescribed ones exert, flattened.
+
+        `coupling` is what those exert, shape (components, active), where it is known.
+        """
         operator = self.operator
-        rhs = self.load[:, operator.active] - operator.coupling(self.values)
+        exerted = operator.coupling(self.values) if coupling is None else coupling
+        rhs = self.load[:, operator.active] - exerted
         if operator.ended_stiffness is not None and self.nodal_load is not None:
             operator.add_at_surface(rhs, -operator.ended_stiffness.condensed_load(self.nodal_load))
         if operator.identity_rows is not None:
@@ -352,7 +355,9 @@ def _share_out(
                 for component, values in enumerate(force):
                     np.add.at(nodal[component], node[felt], (part * values)[felt])
         # Edges without nodes: no treatment that has any, or held particles behind them.
-        _, nearest = KDTree(lattice.centred.points).query(rule.points[~felt])
+        if felt.all():
+            continue
+        _, nearest = lattice.centred.tree.query(rule.points[~felt])
         for component, values in enumerate(force):
             np.add.at(load[component], nearest, values[~felt])
     return nodal

@@ -1,0 +1,288 @@
+"""What an analysis in time leaves behind as it goes: state files, probes and series of fields.
+
+A run that is killed leaves its last state on the disk, written whole or not at all, and fields
+that any program which reads ParaView's files can follow while it runs. It goes on from the state
+with the same results to the last bit: the state holds everything that decides how it goes on, and
+a fingerprint of what decides it besides.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arrays import Array, Indices
+from ..errors import SceneError
+from ..geometry import Lattice
+from ..problem import Discretisation
+from ..result import Table, replacing, suffixed
+
+#: Told the share of the run that is done, 0 to 1.
+Progress = Callable[[float], None]
+
+
+def nearest(lattice: Lattice, points: ArrayLike) -> Indices:
+    """Numbers of the particles nearest to some points, shape (p,).
+
+    Raises
+    ------
+    SceneError
+        If points are no points of the plane, or one has no particle within a cell.
+    """
+    wanted = np.asarray(points, dtype=np.float64)
+    if wanted.ndim != 2 or wanted.shape[1] != 2 or not np.isfinite(wanted).all():
+        raise SceneError(f"probes are points (x, y), an array of shape (p, 2), not {wanted.shape}")
+    distance, found = lattice.tree.query(wanted)
+    if distance.max(initial=0.0) > 1.5 * lattice.spacing:
+        x, y = wanted[np.argmax(distance)]
+        raise SceneError(f"the probe at ({x:g}, {y:g}) is not in the body")
+    return np.asarray(found, dtype=np.int64)
+
+
+def checked_times(times: ArrayLike, start: float, end: float = np.inf) -> Array:
+    """Times at which fields are wanted: ascending, finite, from `start` to `end`.
+
+    Raises
+    ------
+    SceneError
+    """
+    found = np.atleast_1d(np.asarray(times, dtype=np.float64))
+    if found.ndim != 1 or not len(found) or not np.isfinite(found).all():
+        raise SceneError(f"times must be finite numbers in a list, not {times!r}")
+    if (np.diff(found) <= 0).any():
+        raise SceneError("times must ascend, each once")
+    if found[0] < start or found[-1] > end * (1 + 1e-12):
+        raise SceneError(
+            f"times must lie between the start at {start:g} s and the end at {end:g} s, not at "
+            f"{found[0]:g} … {found[-1]:g} s"
+        )
+    return found
+
+
+@dataclass(frozen=True)
+class History:
+    """Values at chosen particles at every step.
+
+    Attributes
+    ----------
+    particles : ndarray of int, shape (p,)
+    times : ndarray, shape (s,), s
+    values : ndarray, shape (s, components, p)
+        In the components' units.
+    """
+
+    particles: Indices
+    times: Array
+    values: Array
+
+    def table(self, names: tuple[str, ...]) -> dict[str, Table]:
+        """The history as a table, columns by component and probe; none without probes."""
+        if not len(self.particles):
+            return {}
+        columns = [f"{name}_{k}" for name in names for k in range(len(self.particles))]
+        rows = self.values.reshape(len(self.times), -1)
+        return {"probes": Table(("time", *columns), np.column_stack([self.times, rows]))}
+
+
+class Log:
+    """Rows of numbers that grow step by step."""
+
+    def __init__(self, width: int, rows: Array | None = None) -> None:
+        self._rows = np.empty((256, width)) if rows is None else rows.copy()
+        self._count = 0 if rows is None else len(rows)
+
+    def append(self, row: Array) -> None:
+        """Add a row, shape (width,)."""
+        if self._count == len(self._rows):
+            grown = np.empty((2 * self._count + 1, self._rows.shape[1]))
+            grown[: self._count] = self._rows
+            self._rows = grown
+        self._rows[self._count] = row
+        self._count += 1
+
+    @property
+    def rows(self) -> Array:
+        """Everything so far, shape (rows, width)."""
+        return self._rows[: self._count]
+
+
+class Series:
+    """Fields at several times as ParaView reads them: one .vtu each, listed in one .pvd.
+
+    Parameters
+    ----------
+    stem : path without suffix
+    lattice : Lattice
+
+    Raises
+    ------
+    SceneError
+        If the folder is missing or cannot be written to.
+    """
+
+    def __init__(self, stem: str | os.PathLike[str], lattice: Lattice) -> None:
+        self.stem, self.points = Path(stem), lattice.points
+        check_writable(suffixed(self.stem, ".pvd"))
+
+    def write(self, number: int, times: Sequence[float], fields: Mapping[str, Array]) -> None:
+        """Write the fields of frame `number` and list the frames of `times`."""
+        import meshio
+
+        count = len(self.points)
+        data = {
+            name: np.column_stack([a, np.zeros(count)]) if a.ndim == 2 else a
+            for name, a in fields.items()
+        }
+        cells = [("vertex", np.arange(count).reshape(-1, 1))]
+        points = np.column_stack([self.points, np.zeros(count)])
+        mesh = meshio.Mesh(points, cells, point_data=data)
+        _whole(self._frame(number), lambda path: mesh.write(path, file_format="vtu"))
+        lines = [
+            f'<DataSet timestep="{time!r}" part="0" file={quoteattr(self._frame(k).name)}/>'
+            for k, time in enumerate(map(float, times))
+        ]
+        body = "\n".join(
+            [
+                '<?xml version="1.0"?>',
+                '<VTKFile type="Collection" version="0.1"><Collection>',
+                *lines,
+                "</Collection></VTKFile>\n",
+            ]
+        )
+        _whole(suffixed(self.stem, ".pvd"), lambda path: path.write_text(body, encoding="utf-8"))
+
+    def _frame(self, number: int) -> Path:
+        return self.stem.with_name(f"{self.stem.name}_{number:05d}.vtu")
+
+
+class StateFile:
+    """The last state of a run, and whether it belongs to the run that asks for it.
+
+    Parameters
+    ----------
+    path : path, optional
+        None: nothing is kept.
+    mark : str
+        Fingerprint of everything that decides the run's results, see `fingerprint`.
+
+    Raises
+    ------
+    SceneError
+        If the folder is missing or cannot be written to.
+    """
+
+    def __init__(self, path: str | os.PathLike[str] | None, mark: str) -> None:
+        self.path, self.mark = None if path is None else Path(path), mark
+        if self.path is not None:
+            check_writable(self.path)
+
+    def save(self, state: Mapping[str, Any]) -> None:
+        """Write a state; a kill at any moment leaves the old file or the new one."""
+        if self.path is None:
+            return
+        arrays: dict[str, Any] = {name: np.asarray(value) for name, value in state.items()}
+        arrays["fingerprint"] = np.asarray(self.mark)
+        arrays["digest"] = np.asarray(digest(arrays))
+
+        def write(path: Path) -> None:
+            with open(path, "wb") as file:
+                np.savez(file, **arrays)
+                file.flush()
+                os.fsync(file.fileno())
+
+        _whole(self.path, write)
+
+    def load(self) -> dict[str, Any] | None:
+        """The saved state, None if there is none.
+
+        Raises
+        ------
+        SceneError
+            If the file is damaged, or belongs to another run.
+        """
+        if self.path is None or not self.path.exists():
+            return None
+        try:
+            with np.load(self.path, allow_pickle=False) as file:
+                found = dict(file)
+        except (OSError, ValueError, EOFError, KeyError) as error:
+            raise SceneError(f"{self.path} is no state of a run: {error}") from error
+        except Exception as error:  # zipfile and zlib have errors of their own
+            raise SceneError(f"{self.path} is damaged: {error}") from error
+        told = str(found.pop("digest", ""))
+        if told != digest(found):
+            raise SceneError(f"{self.path} is damaged: its content is not what was written")
+        if str(found.pop("fingerprint")) != self.mark:
+            raise SceneError(
+                f"the state {self.path} belongs to another scene, start or way of stepping: "
+                f"remove it or name another file"
+            )
+        return found
+
+
+def check_writable(path: Path) -> None:
+    """Refuse a file that cannot be written, before any work.
+
+    Raises
+    ------
+    SceneError
+    """
+    if not path.parent.is_dir():
+        raise SceneError(f"{path} cannot be written: there is no folder {path.parent}")
+    if not os.access(path.parent, os.W_OK) or path.is_dir():
+        raise SceneError(f"{path} cannot be written: no permission, or it is a folder")
+
+
+def digest(parts: Mapping[str, Any]) -> str:
+    """Hash of names and values, arrays by their bytes."""
+    found = hashlib.sha256()
+    for name in sorted(parts):
+        part = parts[name]
+        found.update(name.encode())
+        if isinstance(part, np.ndarray):
+            found.update(f"{part.dtype}{part.shape}".encode())
+            found.update(np.ascontiguousarray(part).tobytes())
+        else:
+            found.update(repr(part).encode())
+    return found.hexdigest()
+
+
+def fingerprint(body: Discretisation, **parts: Any) -> str:
+    """Hash of a body and of whatever else decides a run's results.
+
+    Functions of time enter by the values that they have in `parts`, not by their code.
+    """
+    ended = body.bonds.ended
+    scene = body.scene
+    known: dict[str, Any] = {
+        "mask": body.lattice.mask,
+        "corner": body.lattice.points[0],
+        "offsets": body.family.offsets,
+        "blocks": body.operator.blocks,
+        "strengths": body.bonds.strengths,
+        "prescribed": body.prescribed,
+        "values": body.values,
+        "load": body.load,
+        "nodal": body.nodal_load,
+        "material": (scene.density, scene.heat_capacity, scene.surface),
+    }
+    if ended is not None:
+        known["ended"] = np.concatenate([ended.position, ended.length])
+    return digest(known | parts)
+
+
+def _whole(path: Path, write: Callable[[Path], Any]) -> None:
+    """Write a file so that it is there as a whole or not at all."""
+    try:
+        with replacing(path) as partial:
+            write(partial)
+    except OSError as error:
+        raise SceneError(f"{path} cannot be written: {error}") from error
