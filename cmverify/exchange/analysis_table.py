@@ -11,12 +11,21 @@ import types
 from collections.abc import Callable, Sequence
 from functools import cache
 from inspect import Parameter
-from typing import Any, Literal, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import Field, StrictBool, create_model
 
 from cmverify.exchange.model import SceneFile, Table
-from cmverify.exchange.values import Condition, Count, FileName, Levels, Number, Scalar
+from cmverify.exchange.values import (
+    Condition,
+    Count,
+    FileName,
+    Levels,
+    Number,
+    Point,
+    Scalar,
+    Vector,
+)
 
 
 @cache
@@ -48,7 +57,10 @@ def table_of(name: str, says: str, options: dict[str, Parameter]) -> type[Table]
 
 
 def kind_of(key: str, annotation: Any) -> Any:
-    """What a file says for a keyword of this annotation, checked."""
+    """What a file says for a keyword of this annotation, checked.
+
+    ``Annotated[Value, 2]`` is a value of two components.
+    """
     origin, members = get_origin(annotation), get_args(annotation)
     if origin in (Union, types.UnionType):
         several = [member for member in members if member is not types.NoneType]
@@ -64,6 +76,10 @@ def kind_of(key: str, annotation: Any) -> Any:
         return found | None if optional else found
     if origin is Literal:
         return annotation
+    if origin is Annotated and members[1] == 2:
+        return Vector
+    if origin is tuple and members == (float, float):
+        return Point
     if isinstance(origin, type) and issubclass(origin, Sequence) and members[0] is float:
         return Levels
     simple = {bool: StrictBool, int: Count, float: Number, str: FileName}

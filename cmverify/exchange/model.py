@@ -124,6 +124,7 @@ class Conductivity(Table):
 
     kind: Literal["conductivity"]
     tensor: Matrix2 = Field(description="Conductivity, W/(m K) or S/m")
+    heat_capacity: Positive | None = Field(default=None, description="ρ c, J/(m³ K)")
     angle_degrees: Number = Field(default=0.0, description="Turn anticlockwise")
 
 

@@ -227,6 +227,7 @@ def _scene(file: SceneFile, source: Source) -> Scene:
             cracks=cracks,
             law=_law(law, exponent),
             density=getattr(file.material, "density", None),
+            heat_capacity=getattr(file.material, "heat_capacity", None),
             **options,
         )
 

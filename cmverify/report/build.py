@@ -175,9 +175,10 @@ def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture
         alt = f"Maps of {key}: computed, reference and their difference; {where}."
         figure = figures.field_panels(fields, item, case.length)
         pictures.append(Picture.drawn(f"field-{key}", "png", figure, caption, alt, wide=True))
-    if featured[finest].stages is not None:
+    stages = featured[finest].stages
+    if stages is not None:
         caption = f"The crack's stages beside the curve: {where}."
-        alt = f"Maps of {featured[finest].stages.quantity} at marked points of the curve; {where}."
+        alt = f"Maps of {stages.quantity} at marked points of the curve; {where}."
         figure = stages_figure(featured[finest])
         pictures.append(Picture.drawn("stages", "png", figure, caption, alt, wide=True))
     for index, (line, series) in enumerate(figures.lines_of(featured), 1):

@@ -19,6 +19,7 @@ Unknowns of the linear systems are increments: where T lies on the Kelvin scale 
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
 from typing import Any
@@ -44,6 +45,7 @@ from .recording import (
     fingerprint,
     nearest,
 )
+from .registry import Analysis
 
 _GAMMA = 2.0 - np.sqrt(2.0)
 _D = 0.5 * _GAMMA
@@ -460,3 +462,31 @@ class _March:
             statistics,
             self.forcing,
         )
+
+
+def _asked(
+    scene: Description,
+    initial: Value,
+    times: Sequence[float],
+    start: float = 0.0,
+    tolerance: float = 1e-4,
+    step: float | None = None,
+    series: str | None = None,
+    checkpoint: str | None = None,
+    every: int = 20,
+) -> Transient:
+    """`run`, by what a scene file can say."""
+    return run(
+        scene,
+        initial,
+        times,
+        start=start,
+        tolerance=tolerance,
+        step=step,
+        series=series,
+        checkpoint=checkpoint,
+        every=every,
+    )
+
+
+ANALYSIS = Analysis("transient", "Conduction of heat in time.", _asked)

@@ -15,9 +15,10 @@ for bodies whose interesting motion is slower by far, slender or stiff ones.
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,6 +31,7 @@ from ..problem.conditions import Value
 from ..result import Result, Table
 from .motion import Motion, Settings
 from .recording import History, Progress, checked_times
+from .registry import Analysis
 
 
 @dataclass(frozen=True)
@@ -333,3 +335,41 @@ def _last(kept: Array, body: Discretisation) -> Array:
     """Unknowns of the last fields, shape (components, N)."""
     scales = body.moduli.scales(body.scene.spacing)
     return np.asarray(kept[-1][[0, 1, 4][: len(scales)]] * scales[:, None])
+
+
+def _asked(
+    scene: Description,
+    end: float,
+    initial: Annotated[Value, 2] = (0.0, 0.0),
+    velocity: Annotated[Value, 2] = (0.0, 0.0),
+    times: Sequence[float] | None = None,
+    start: float = 0.0,
+    step: float | None = None,
+    courant: float = 0.9,
+    scheme: Literal["verlet", "newmark"] = "verlet",
+    rotations: Literal["condensed", "inertia"] = "condensed",
+    damping: tuple[float, float] = (0.0, 0.0),
+    series: str | None = None,
+    checkpoint: str | None = None,
+    every: int = 200,
+) -> Waves:
+    """`run`, by what a scene file can say."""
+    return run(
+        scene,
+        initial,
+        end,
+        velocity=velocity,
+        times=times,
+        start=start,
+        step=step,
+        courant=courant,
+        scheme=scheme,
+        rotations=rotations,
+        damping=(damping[0], damping[1]),
+        series=series,
+        checkpoint=checkpoint,
+        every=every,
+    )
+
+
+ANALYSIS = Analysis("waves", "Motion of an elastic body in time.", _asked)

@@ -1,7 +1,8 @@
 """Every analysis has its table in scene files, and a file asks for one of them."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, Literal
+from pathlib import Path
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import pytest
@@ -13,6 +14,8 @@ from cmverify.exchange.refusal import SceneFileError
 from solver.analyses import Analysis, analyses
 from solver.geometry import Where
 from solver.problem.conditions import Value
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
 
 PLATE = """
 [discretisation]
@@ -63,6 +66,28 @@ def test_keywords_become_keys():
     for wrong in ({}, {"count": 0}, {"count": 1, "kind": "c"}, {"count": 1, "quick": 1}):
         with pytest.raises(ValidationError):
             table.model_validate(wrong)
+
+
+def test_pairs_are_vectors_of_formulas_or_points():
+    found = table_of("pair", "One.", Analysis("pair", "One.", pair).options).model_validate(
+        {"field": ["x", 1.0], "both": [1, 2]}
+    )
+    assert found.field(np.array([2.0]), np.array([0.0])).tolist() == [[2.0, 1.0]]
+    assert found.both == [1.0, 2.0]
+
+
+def pair(scene: object, field: Annotated[Value, 2], both: tuple[float, float]) -> None:
+    """Keywords with two components."""
+
+
+@pytest.mark.parametrize(
+    ("name", "analysis", "keys"),
+    [("cooling", "transient", {"initial", "times"}), ("pulse", "waves", {"end", "velocity"})],
+)
+def test_examples_in_time(name, analysis, keys):
+    request = scene_file.request(EXAMPLES / f"{name}.toml")
+    assert request.analysis == analysis
+    assert set(request.options) == keys
 
 
 def test_what_a_file_cannot_say_is_named():
