@@ -3,6 +3,7 @@
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -27,7 +28,7 @@ def test_the_scene_of_the_readme_is_solved():
 
 
 def test_the_plate_of_the_readme_is_pulled():
-    (code,) = [block for block in blocks("python") if "extrapolated" in block]
+    (code,) = [block for block in blocks("python") if "surface_displacement" in block]
     names: dict = {}
     exec(code, names)
     points = names["solution"].surface_points
@@ -37,6 +38,17 @@ def test_the_plate_of_the_readme_is_pulled():
     assert moved[points[:, 0].argmax(), 0] > 0
     sides = abs(names["solution"].points[:, 0]) > 0.49
     assert abs(stress[sides, 0, 0].mean() - 1) < 0.02
+
+
+def test_the_bodies_of_the_readme_vibrate_and_warm_up():
+    (code,) = [block for block in blocks("python") if "modes.solve" in block]
+    names: dict = {}
+    exec(code, names)
+    assert names["found"].rigid == 3
+    # Lamé's mode of a free square plate, ω = π/L √((C11 − C12)/ρ).
+    exact = np.pi / 0.5 * (70e9 / 1.3 / 2700.0) ** 0.5
+    assert abs(names["found"].frequencies / exact - 1).min() < 2e-3
+    assert abs(names["warm"].statistics.balance) < 1e-10
 
 
 def test_commands_of_the_readme_exist():
