@@ -1,7 +1,7 @@
 """Bonds of a body: which exist, what ends at the surface, how they strain (Eqs. 1–3)."""
 
-from .bonds import Bonds, crosses, damage
+from .bonds import Bonds, damage
 from .ended import EndedBonds
 from .volume_method import Surface, check_surface
 
-__all__ = ["Bonds", "EndedBonds", "Surface", "check_surface", "crosses", "damage"]
+__all__ = ["Bonds", "EndedBonds", "Surface", "check_surface", "damage"]

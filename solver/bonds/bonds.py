@@ -19,44 +19,13 @@ from scipy.spatial import KDTree
 
 from ..arrays import Array, Indices, Mask
 from ..errors import NoOutlineError, SceneError
-from ..geometry import Body, Crack, Lattice, Outline
-from ..geometry.outline import apart
+from ..geometry import Body, Crack, CrackSet, Frame, Lattice, Outline
 from ..material import Family
 from .ended import EndedBonds
 from .volume_method import Surface, full_volume, volume_factor
 
-# Share of the spacing within which a point counts as lying on a crack.
+# Share of a length within which two are equal.
 _TIE = 1e-9
-
-
-def crosses(
-    start: Array,
-    end: Array,
-    crack_start: Array,
-    crack_end: Array,
-    tip: tuple[bool, bool],
-    spacing: float,
-) -> Mask:
-    """Whether bonds from `start` to `end` (shapes (..., 2)) cross a straight piece of crack.
-
-    Exact ties: a bond through the very tip stays (where `tip` marks that end of the piece), so
-    that the two diagonals of a tip between four particles are treated alike and mirror symmetry
-    stands; measured, cutting them raises the crack-tip errors by half. A bond through the joint
-    of two pieces is cut. A particle *on* the crack line belongs to its left side.
-    """
-    along = crack_end - crack_start
-    size = float(np.hypot(*along))
-    along = along / size
-    across = np.array([-along[1], along[0]])
-    tie = _TIE * spacing
-    a, b = start - crack_start, end - crack_start
-    height_a, height_b = a @ across, b @ across
-    opposite = (height_a >= -tie) != (height_b >= -tie)
-    gap = height_a - height_b
-    gap = np.where(opposite & (gap != 0.0), gap, 1.0)
-    where = a @ along + (b @ along - a @ along) * height_a / gap
-    low, high = (tie if tip[0] else -tie), (size - tie if tip[1] else size + tie)
-    return opposite & (where >= low) & (where <= high)
 
 
 class Bonds:
@@ -102,6 +71,10 @@ class Bonds:
         self.short: Indices = near[~self.exist(near).all(axis=0)]
         #: What the answer leaves out or settles by a rule, one sentence each.
         self.warnings: tuple[str, ...] = ()
+        #: The body's polygon, None where its region does not say where its edges run.
+        self.body: Body | None = self._polygon()
+        #: All cracks as one set.
+        self.cracks: CrackSet
         cut_at, cut = self._cut_bonds(cracks)
         #: Particles with bonds that leave the body on their way to a neighbour that is there, and
         #: which these are, shape (family size, particles). They do not exist.
@@ -144,7 +117,7 @@ class Bonds:
         #: Bonds that end at the surface, if the treatment has any.
         self.ended: EndedBonds | None = None
         if treatment == "extrapolated":
-            self.ended = self._end(cracks, cut_at, cut, free, broken_at, sharp_tips)
+            self.ended = self._end(cut_at, cut, free, broken_at, sharp_tips)
 
     def breaking(self, offsets: Indices, origins: Indices) -> Bonds:
         """These bonds with some more of them broken; what has not changed is shared.
@@ -216,7 +189,6 @@ class Bonds:
 
     def _end(
         self,
-        cracks: Sequence[Crack],
         cut_at: Indices,
         cut: Mask,
         free: Mask,
@@ -235,8 +207,7 @@ class Bonds:
         for at, gone in ((cut_at, cut), (self.outside_at, self.outside)):
             kept = np.isin(at, particles)
             lost[:, np.searchsorted(particles, at[kept])] |= gone[:, kept]
-        apart(cracks)
-        outline = Outline.of(lattice.region, cracks, lattice.spacing, sharp_tips=sharp_tips)
+        outline = Outline.of(lattice.region, self.cracks, lattice.spacing, sharp_tips=sharp_tips)
         free = free[particles]
         ended = EndedBonds.of(lattice, family, outline, particles[free], lost[:, free])
         if free.all():
@@ -249,17 +220,21 @@ class Bonds:
         others = EndedBonds.of(lattice, family, outline, particles[near], lost[:, near])
         return ended.joined(others).with_chords(lattice, family)
 
-    def _outside(self) -> tuple[Indices, Mask]:
-        """Particles with bonds that leave the body on their way, and which these are."""
+    def _polygon(self) -> Body | None:
         try:
-            body = Body.of(self.lattice)
+            return Body.of(self.lattice)
         except NoOutlineError:
             self.warnings += (
                 f"a {type(self.lattice.region).__name__} has no outline: whether bonds stay inside "
                 f"the body is judged by their particles alone, and slots are bridged",
             )
+            return None
+
+    def _outside(self) -> tuple[Indices, Mask]:
+        """Particles with bonds that leave the body on their way, and which these are."""
+        if self.body is None:
             return np.zeros(0, dtype=np.int64), np.zeros((self.family.size, 0), dtype=bool)
-        return body.leaving(self.lattice, self.family.offsets)
+        return self.body.leaving(self.lattice, self.family.offsets)
 
     def _both_ends(self, broken: Mask | None) -> tuple[Indices, Mask]:
         """Particles with broken bonds and which, from the half offsets of one end."""
@@ -283,43 +258,21 @@ class Bonds:
         return particles, whole[:, particles]
 
     def _cut_bonds(self, cracks: Sequence[Crack]) -> tuple[Indices, Mask]:
-        """Particles with cut bonds and which of their bonds are cut."""
-        lattice, family = self.lattice, self.family
-        reach = float(family.length.max())
-        touched: dict[int, NDArray[np.bool_]] = {}
-        bonds = family.offsets * lattice.spacing
-        for crack in cracks:
-            found = False
-            for k, piece in enumerate(crack.segments):
-                piece_start, piece_end = np.array(piece)
-                near = self._near(piece_start, piece_end, reach)
-                start = lattice.points[near][None, :, :]
-                last = len(crack.segments) - 1
-                tip = (k == 0 and not crack.closed, k == last and not crack.closed)
-                end = start + bonds[:, None, :]
-                cut = crosses(start, end, piece_start, piece_end, tip, lattice.spacing)
-                cut &= self.exist(near)
-                for column in np.nonzero(cut.any(axis=0))[0]:
-                    p, found = int(near[column]), True
-                    mine = cut[:, column]
-                    touched[p] = touched[p] | mine if p in touched else mine
+        """Particles with bonds that cracks cut, and which these are."""
+        self.cracks = CrackSet.joined(Frame.of(self.lattice), cracks, self.body)
+        particles, cut, met, lying = self.cracks.cut(self.lattice, self.family.offsets)
+        for crack, found in zip(cracks, met, strict=True):
             if not found:
                 raise SceneError(
-                    f"the crack through {crack.drawn} cuts no bond: it lies outside the body"
+                    f"the crack through {crack.drawn} cuts no bond: it lies outside the body "
+                    f"or beyond its last particles"
                 )
-        particles = np.array(sorted(touched), dtype=np.int64)
-        if not len(particles):
-            return particles, np.zeros((family.size, 0), dtype=bool)
-        return particles, np.stack([touched[int(p)] for p in particles], axis=1)
-
-    def _near(self, start: Array, end: Array, reach: float) -> Indices:
-        """Particles within `reach` of the line from `start` to `end`, and beside it."""
-        points = self.lattice.points
-        low, high = np.minimum(start, end) - reach, np.maximum(start, end) + reach
-        near = np.nonzero(np.all((points >= low) & (points <= high), axis=1))[0]
-        along = (end - start) / np.linalg.norm(end - start)
-        height = (points[near] - start) @ np.array([-along[1], along[0]])
-        return near[np.abs(height) <= reach]
+        if lying:
+            self.warnings += (
+                f"{lying} particles lie on a crack: they belong to its upper side, where it is "
+                f"upright to its right, and it seems to run half a cell from where it is drawn",
+            )
+        return particles, cut
 
     @cached_property
     def column(self) -> NDArray[np.int64]:

@@ -32,7 +32,8 @@ Edges along the lattice's rows need one thing more, a thin membrane on the nodes
 
 A bond that a load breaks does not end at a surface: it carries nothing. Ended bonds themselves
 have no strength: a crack that grows through them and out through an edge cuts them (`parting`).
-Cracks that meet each other are refused.
+Where cracks branch, cross or bend every sector of the body between them has a node of its own
+(`solver.geometry.faces`).
 """
 
 from __future__ import annotations

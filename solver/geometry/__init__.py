@@ -1,6 +1,8 @@
 """Bodies: regions, their particles, their outline, and every question of place."""
 
+from .crack_set import CrackSet
 from .edge_quadrature import Quadrature
+from .exact import Frame
 from .inside import Body
 from .lattice import Lattice, select
 from .outline import Outline
@@ -11,6 +13,8 @@ from .strips import volumes
 __all__ = [
     "Body",
     "Crack",
+    "CrackSet",
+    "Frame",
     "Lattice",
     "Outline",
     "Point",

@@ -28,6 +28,7 @@ from ..compiled import kernel
 from . import exact
 from .exact import CELL, Frame, side, sign_of_cross
 from .lattice import Lattice
+from .regions import Region
 from .rings import rings
 
 _OPTIONS: Any = {"uses": (exact.__file__,), "nogil": True}
@@ -58,16 +59,20 @@ class Body:
 
     @classmethod
     def of(cls, lattice: Lattice) -> Body:
-        """The body of a lattice's particles.
+        """The body of a lattice's particles; see `within`."""
+        return cls.within(lattice.region, Frame.of(lattice))
+
+    @classmethod
+    def within(cls, region: Region, frame: Frame) -> Body:
+        """The body of a region.
 
         Raises
         ------
         NoOutlineError
             If the region has no outline.
         """
-        frame = Frame.of(lattice)
         points, before, after, polygons, count = [], [], [], [], 0
-        for polygon in rings(lattice.region, lattice.spacing):
+        for polygon in rings(region, frame.spacing):
             whole = [ring for ring in map(frame.units, polygon) if len(ring)]
             whole = [ring[(ring != np.roll(ring, 1, axis=0)).any(axis=1)] for ring in whole]
             whole = [ring for ring in whole if len(ring) > 2]

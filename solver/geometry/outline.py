@@ -2,23 +2,27 @@
 
 Nodes lie one to two and a half spacings apart and keep the corners. The body is to the left of
 every edge. The faces of a crack have nodes of their own each and meet at its tips, and the edge
-that a crack runs into is split there: nothing on the outline joins what a crack separates.
+that a crack runs into is split there (`faces`): nothing on the outline joins what a crack
+separates.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from itertools import combinations, pairwise
+from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
 from ..arrays import Array, Indices, Mask
-from ..errors import SceneError
+from .crack_set import CrackSet
+from .exact import Frame
+from .faces import TIE, closed, meet, trace
+from .inside import Body
 from .regions import Crack, Region
-from .rings import CLOSE, EDGE_STEP, SHARP, rings
+from .rings import EDGE_STEP, rings
 
 # Distance of nodes in spacings, `EDGE_STEP` elsewhere: on edges that run obliquely through the
 # lattice some cells average out where bonds happen to end (of 1, 1.5, 2, 2.5, 3, 4 cells 2.5 had
@@ -28,12 +32,12 @@ from .rings import CLOSE, EDGE_STEP, SHARP, rings
 # faces part linearly, sets how far the lattice sees the crack reach: of 1, 2, 3 cells one has the
 # smallest error in mode I and less than separate tips in mode II.
 _LEVEL_STEP, _FACE_STEP = 1.0, 1.0
-# Share of the step within which a line counts as touching.
-_TIE = 1e-6
 # Shares of a bond that are the same.
 _SAME = 1e-7
 # Share of an edge within which a point on it counts as at its node.
-_AT_NODE = 1e-6
+_AT_NODE = 4e-5
+# Angle (rad) within which two directions are one, and in which who sits in a joint counts as lying.
+_NARROW, _UPWARDS = 1e-4, 0.5 * np.pi - 1e-3
 # Bonds whose candidates are compared at once.
 _CHUNK = 100_000
 
@@ -48,72 +52,62 @@ class Outline:
     edges : ndarray of int, shape (e, 2)
         First and last node; the body lies to the left.
     face : ndarray of int, shape (e,)
-        0 for an edge of the region, 1 and 2 for the left and the right face of a crack.
+        0 for an edge of the region, 1 and 2 for the upper and the lower face of a crack (left and
+        right, where it is upright).
     owned : ndarray of bool, shape (e,), optional
         Whether particles on an edge are the body's (`regions`): not on the rim of a hole. All are
         by default.
+    joints : ndarray of bool, shape (n,)
+        Nodes at which a crack ends, bends, branches or meets an edge.
     """
 
     nodes: Array
     edges: Indices
     face: Indices
     owned: Mask | None = None
+    joints: Mask = field(default_factory=lambda: np.zeros(0, dtype=bool))
+
+    def __post_init__(self) -> None:
+        if not len(self.joints):
+            object.__setattr__(self, "joints", np.zeros(len(self.nodes), dtype=bool))
 
     @classmethod
     def of(
-        cls, region: Region, cracks: Sequence[Crack], spacing: float, sharp_tips: bool = True
+        cls,
+        region: Region,
+        cracks: Sequence[Crack] | CrackSet,
+        spacing: float,
+        sharp_tips: bool = True,
     ) -> Outline:
         """Outline of a region with cracks.
 
         Parameters
         ----------
         region : Region
-        cracks : sequence of Crack
+        cracks : sequence of Crack, or CrackSet
         spacing : float
             Of the lattice, m.
         sharp_tips : bool
             Whether the two faces of a crack share the node of each tip. They must not once the
             crack grows.
         """
-        nodes: list[Array] = []
-        edges: list[Indices] = []
-        face: list[int] = []
-        count = 0
-
-        def chain(points: Array, links: Indices, kind: int) -> None:
-            """Append a chain; `links` numbers its new points from 0, earlier ones below that."""
-            nonlocal count
-            nodes.append(points)
-            edges.append(links + count)
-            face.extend([kind] * len(links))
-            count += len(points)
-
         step = EDGE_STEP * spacing
-        for ring in (ring for body in rings(region, spacing) for ring in body):
-            line = _walk(np.append(ring, ring[:1], axis=0), step, level=_LEVEL_STEP * spacing)
-            chain(*_split(line, cracks, step), 0)
-        for crack in cracks:
-            line = _walk(np.array(crack.points), _FACE_STEP * spacing, last=True)
-            size = len(line)
-            order = np.arange(size)
-            if crack.closed:
-                size -= 1
-                order[-1] = 0
-            chain(line[:size], np.column_stack([order[:-1], order[1:]]), 1)
-            if sharp_tips and not crack.closed:
-                # The right face shares the nodes of tips; a mouth, on the edge or beyond, is none.
-                x, y = line[[0, -1]].T
-                first, last = region.contains(x, y) & (region.edge_distance(x, y) > _TIE * spacing)
-                order = order - int(first)
-                if first:
-                    order[0] = -size
-                if last:
-                    order[-1] = -1
-                line = line[int(first) : size - int(last)]
-            chain(line[:size], np.column_stack([order[1:], order[:-1]]), 2)
-        points, links = np.concatenate(nodes), np.concatenate(edges)
-        middle = 0.5 * (points[links[:, 0]] + points[links[:, 1]])
-        return cls(points, links, np.array(face), region.contains(*middle.T))
+        chains = [
+            _walk(np.append(ring, ring[:1], axis=0), step, level=_LEVEL_STEP * spacing)
+            for part in rings(region, spacing)
+            for ring in part
+        ]
+        if not isinstance(cracks, CrackSet):
+            frame = Frame(np.array(region.bounds[:2]), spacing)
+            cracks = CrackSet.joined(frame, cracks, Body.within(region, frame))
+        if len(cracks.pieces):
+            body = Body.within(region, cracks.frame)
+            found = trace(chains, cracks, body, (EDGE_STEP, _FACE_STEP), sharp_tips)
+        else:
+            found = closed(chains)
+        ends = found.nodes[found.edges]
+        owned = region.contains(*ends.mean(axis=1).T)
+        return cls(found.nodes, found.edges, found.face, owned, found.joints)
 
     @property
     def length(self) -> Array:
@@ -158,7 +152,14 @@ class Outline:
         lost = edge < 0
         if lost.any():
             edge[lost], position[lost], share[lost] = self._hit(start[lost], bond[lost], -1.0, 2.0)
-        return edge, np.clip(position, 0.0, 1.0), share
+        lost = edge < 0
+        if lost.any():
+            # One from a particle on a crack, past a tip. What is left runs along an edge towards a
+            # site on it that is no particle: there the membrane along the edge stands for it.
+            found = self._hit(start[lost], bond[lost], 0.0, 1.0, tips=True)
+            edge[lost], position[lost], share[lost] = found
+        # Rounding may put it beyond an end; a field linear along the edge stays exact there.
+        return edge, np.clip(position, -TIE, 1.0 + TIE), share
 
     @property
     def _lines(self) -> NDArray[np.object_]:
@@ -166,31 +167,41 @@ class Outline:
         return np.asarray(shapely.linestrings(ends))
 
     def _hit(
-        self, start: Array, bond: Array, low: float, high: float
+        self, start: Array, bond: Array, low: float, high: float, tips: bool = False
     ) -> tuple[Indices, Array, Array]:
-        """As `first_hit`, among shares between `low` and `high`; edge −1 where nothing is met."""
+        """As `first_hit`, among shares between `low` and `high`; edge −1 where nothing is met.
+
+        With `tips` bonds end at tips too.
+        """
         count = len(start)
         edge, position, share = np.full(count, -1), np.zeros(count), np.zeros(count)
+        outward = self.outward
         first, last = self.nodes[self.edges[:, 0]], self.nodes[self.edges[:, 1]]
-        tree = shapely.STRtree(self._lines)
+        # Padded, so that rounding hides no edge from a bond that starts on it.
+        pad = TIE * np.array([-1.0, 1.0])[:, None] * self.length.max()
+        (x0, y0), (x1, y1) = (
+            end(first.T, last.T) + by for end, by in zip((np.minimum, np.maximum), pad, strict=True)
+        )
+        tree = shapely.STRtree(shapely.box(x0, y0, x1, y1))
         for begin in range(0, count, _CHUNK):
             part = slice(begin, min(begin + _CHUNK, count))
             ends = [start[part] + where * bond[part] for where in (low, high)]
             path, met = tree.query(shapely.linestrings(np.stack(ends, axis=1)))
             path += begin
-            where, depth, valid = _meet(start[path], bond[path], first[met], last[met], low, high)
+            where, depth, valid = meet(start[path], bond[path], first[met], last[met], low, high)
             # Bonds leave through an edge and do not enter: particles may lie in a sliver. A
-            # particle sees the face of a crack that is turned to it; one on the crack's line
-            # belongs to the left, as for bonds that the crack cuts.
+            # particle sees the face of a crack that is turned to it; one on the crack itself
+            # belongs to the upper side, as for bonds that the crack cuts.
             leaves = self._leaves(bond[path], met, where)
-            valid &= np.where(self.face[met] == 0, leaves, self._turned(start[path], met))
-            # At a mouth both ends of the split edge are met: only the one on the particle's own
-            # side of the crack counts.
-            end = valid & (self.face[met] == 0) & (np.abs(where - 0.5) > 0.5 - 1e-6)
-            valid[end] &= ~self._behind(start[path[end]], 0.5 * (first[met[end]] + last[met[end]]))
+            inwards = np.einsum("ki,ki->k", bond[path], outward[met]) > 0
+            turned = inwards & self._turned(start[path], met)
+            valid &= np.where(self.face[met] == 0, leaves, turned)
+            # Where a crack branches, bends or meets an edge several nodes are met: only that on the
+            # particle's own side counts.
+            valid &= ~self._hidden(start[path], bond[path], met, where, tips)
             path, met, where, depth = path[valid], met[valid], where[valid], depth[valid]
             # Nearest to the bond itself, then to its start.
-            beyond = np.abs(depth - np.clip(depth, 0.0, 1.0))
+            beyond = np.maximum(np.abs(depth - np.clip(depth, 0.0, 1.0)) - TIE, 0.0)
             # Where several are met at once, which one counts must not depend on rounding.
             order = np.lexsort((met, np.rint(depth / _SAME), np.rint(beyond / _SAME), path))
             path, nearest = np.unique(path[order], return_index=True)
@@ -198,7 +209,7 @@ class Outline:
             edge[path], position[path], share[path] = met[chosen], where[chosen], depth[chosen]
         return edge, position, share
 
-    def _leaves(self, bond: Array, edge: Indices, position: Array) -> NDArray[np.bool_]:
+    def _leaves(self, bond: Array, edge: Indices, position: Array) -> Mask:
         """Whether bonds lead out of the body where they meet edges of the region."""
         outward = self.outward
         leaves = np.einsum("ki,ki->k", bond, outward[edge]) > 0
@@ -211,7 +222,7 @@ class Outline:
         one, two = outward[edge[both]], outward[other[both]]
         turn = one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0]
         turn[position[both] < _AT_NODE] *= -1
-        inner = both[turn < -_TIE]
+        inner = both[turn < -TIE]
         leaves[inner] &= np.einsum("ki,ki->k", bond[inner], outward[other[inner]]) > 0
         return leaves
 
@@ -226,27 +237,67 @@ class Outline:
         edge[at] = own[nearest]
         away = places - self.nodes[self.edges[edge, 0]]
         out = np.einsum("ki,ki->k", away, self.outward[edge])
-        off = (out > _TIE * self.length[edge])[which.ravel()]
+        off = (out > TIE * self.length[edge])[which.ravel()]
         edge = edge[which.ravel()]
         beyond[off] = np.einsum("ki,ki->k", bond[off], self.outward[edge[off]]) > 0
         return beyond
 
-    def _behind(self, points: Array, targets: Array) -> NDArray[np.bool_]:
-        """Whether a crack lies between each point and its target."""
-        behind = np.zeros(len(points), dtype=bool)
-        for k in np.nonzero(self.face == 1)[0]:
-            a, b = self.nodes[self.edges[k]]
-            along = b - a
-            height = [
-                along[0] * (p[:, 1] - a[1]) - along[1] * (p[:, 0] - a[0]) for p in (points, targets)
-            ]
-            tie = _TIE * (along @ along)
-            opposite = (height[0] >= -tie) != (height[1] >= -tie)
-            gap = np.where(opposite, height[0] - height[1], 1.0)
-            at = points + (height[0] / gap)[:, None] * (targets - points)
-            share = (at - a) @ along / (along @ along)
-            behind |= opposite & (share >= -_TIE) & (share <= 1 + _TIE)
-        return behind
+    def _hidden(
+        self, points: Array, bond: Array, edge: Indices, position: Array, tips: bool
+    ) -> Mask:
+        """Whether bonds meet a joint at a node that lies in another sector than they come from.
+
+        A tip ends none at all, unless `tips`.
+        """
+        hidden = np.zeros(len(points), dtype=bool)
+        node = np.where(position < 0.5, self.edges[edge, 0], self.edges[edge, 1])
+        at = np.nonzero((np.abs(position - 0.5) > 0.5 - _AT_NODE) & self.joints[node])[0]
+        if not len(at):
+            return hidden
+        node, bond = node[at], bond[at]
+        leaving, arriving = np.full((2, len(self.nodes)), -1)
+        leaving[self.edges[:, 0]] = arriving[self.edges[:, 1]] = np.arange(len(self.edges))
+        one, two = leaving[node], arriving[node]
+        angle = np.arctan2(*(self.nodes[self.edges[:, 1]] - self.nodes[self.edges[:, 0]]).T[::-1])
+        # The body lies between the edge that leaves and, anticlockwise, the way back.
+        width = (angle[two] + np.pi - angle[one]) % (2 * np.pi)
+        tip = (one < 0) | (two < 0) | (np.minimum(width, 2 * np.pi - width) < _NARROW)
+        away = points[at] - self.nodes[node]
+        here = np.hypot(*away.T) < TIE * self.length.max()
+        from_angle = np.where(here, _UPWARDS, np.arctan2(away[:, 1], away[:, 0]))
+
+        def within(angles: Array) -> Mask:
+            """Whether directions lie in the sector, edges of the region included."""
+            turned = (angles - angle[one]) % (2 * np.pi)
+            inside = turned < width
+            for bound, arm in ((0.0, one), (width, two)):
+                off = np.abs(turned - bound)
+                tie = np.minimum(off, 2 * np.pi - off) < _NARROW
+                # On a crack: moved upwards, an upright one to its right.
+                along = np.stack([np.cos(angles), np.sin(angles)])
+                left = self._upper(np.zeros(len(angles)), along.T)
+                beside = np.where(arm == one, left, ~left)
+                inside = np.where(tie, np.where(self.face[arm] == 0, True, beside), inside)
+            return np.asarray(inside)
+
+        seen = within(from_angle)
+        # Who sits in the joint itself meets it only where the bond leaves his sector.
+        towards = np.arctan2(bond[:, 1], bond[:, 0])
+        way = (towards - angle[one]) % (2 * np.pi) - (from_angle - angle[one]) % (2 * np.pi)
+        seen &= ~(here & within(towards) & (np.abs(way) <= np.pi))
+        hidden[at] = np.where(tip, not tips, ~seen)
+        return hidden
+
+    @staticmethod
+    def _upper(height: Array, along: Array) -> Mask:
+        """Whether points at a height (times length) over a piece belong to its left side.
+
+        Those on it belong to the upper one, of an upright piece to the right one.
+        """
+        upright = np.abs(along[..., 0]) <= TIE * np.abs(along[..., 1])
+        rule = np.where(upright, along[..., 1] < 0.0, along[..., 0] > 0.0)
+        tie = np.abs(height) <= TIE * (along * along).sum(axis=-1)
+        return np.asarray(np.where(tie, rule, height > 0.0))
 
     @property
     def beside(self) -> tuple[Indices, Indices]:
@@ -280,13 +331,13 @@ class Outline:
         first, last = self.nodes[self.edges[:, 0]], self.nodes[self.edges[:, 1]]
         tree = shapely.STRtree(self._lines)
         line, met = tree.query(shapely.linestrings(np.stack([start, start + bond], axis=1)))
-        where, depth, valid = _meet(start[line], bond[line], first[met], last[met])
+        where, depth, valid = meet(start[line], bond[line], first[met], last[met])
         line, met, where, depth = line[valid], met[valid], where[valid], depth[valid]
         order = np.lexsort((depth, line))
         line, met, where, depth = line[order], met[order], where[order], depth[order]
         # A line through a node meets both its edges there: one of them counts.
         fresh = np.ones(len(line), dtype=bool)
-        fresh[1:] = (line[1:] != line[:-1]) | (depth[1:] > depth[:-1] + _TIE)
+        fresh[1:] = (line[1:] != line[:-1]) | (depth[1:] > depth[:-1] + TIE)
         line, met, where, depth = line[fresh], met[fresh], where[fresh], depth[fresh]
         lines, begin, count = np.unique(line, return_index=True, return_counts=True)
         begin = begin[count == 2]
@@ -303,7 +354,7 @@ class Outline:
         return (
             lines[count == 2][whole],
             met[pair][whole],
-            np.clip(where[pair][whole], 0.0, 1.0),
+            where[pair][whole],
             depth[pair][whole],
         )
 
@@ -312,27 +363,7 @@ class Outline:
         first, last = self.nodes[self.edges[edge, 0]], self.nodes[self.edges[edge, 1]]
         along, away = last - first, points - first
         height = along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0]
-        tie = _TIE * np.einsum("ki,ki->k", along, along)
-        return np.asarray(np.where(self.face[edge] == 2, height > tie, height >= -tie))
-
-
-def apart(cracks: Sequence[Crack]) -> None:
-    """Refuse cracks that meet each other or themselves: their faces would stay joined there.
-
-    Raises
-    ------
-    SceneError
-    """
-    lines = [shapely.LineString(crack.points) for crack in cracks]
-    for line, crack in zip(lines, cracks, strict=True):
-        if not line.is_simple:
-            raise SceneError(f"the crack through {crack.drawn} crosses itself")
-    for one, other in combinations(range(len(lines)), 2):
-        if lines[one].intersects(lines[other]):
-            raise SceneError(
-                f"the cracks through {cracks[one].drawn} and {cracks[other].drawn} meet: "
-                f"surface='extrapolated' knows no branching faces, use surface='volume'"
-            )
+        return self._upper(height, along)
 
 
 def _walk(points: Array, step: float, level: float | None = None, last: bool = False) -> Array:
@@ -353,59 +384,3 @@ def _walk(points: Array, step: float, level: float | None = None, last: bool = F
     if last:
         pieces.append(points[-1:])
     return np.concatenate(pieces)
-
-
-def _split(ring: Array, cracks: Sequence[Crack], step: float) -> tuple[Array, Indices]:
-    """A ring opened wherever a crack runs into it: points and links between them."""
-    mouths: set[int] = set()
-    for crack in cracks:
-        for piece in crack.segments:
-            first, last = np.array(piece)
-            ahead = np.roll(ring, -1, axis=0)
-            _, depth, valid = _meet(ring, ahead - ring, first, last)
-            # From the end, so that what is inserted does not move what is still to come.
-            for k in np.nonzero(valid)[0][::-1]:
-                point = ring[k] + depth[k] * (ahead[k] - ring[k])
-                near = np.hypot(*(ring - point).T)
-                place = int(near.argmin())
-                free = near[place] < _TIE * step or not _is_corner(ring, place)
-                if near[place] < CLOSE * step and free:
-                    ring[place] = point
-                else:
-                    place = int(k) + 1
-                    ring = np.insert(ring, place, point, axis=0)
-                    mouths = {m + (m >= place) for m in mouths}
-                mouths.add(place)
-    count = len(ring)
-    order = np.arange(count)
-    links = np.column_stack([order, (order + 1) % count])
-    doubles = sorted(mouths)
-    for extra, place in enumerate(doubles):
-        # The edge that arrives ends at a double.
-        links[(place - 1) % count, 1] = count + extra
-    return np.concatenate([ring, ring[doubles]]), links
-
-
-def _is_corner(ring: Array, place: int) -> bool:
-    """Whether a closed ring turns sharply there: corners of a body stay where they are."""
-    before, here, after = ring[place - 1], ring[place], ring[(place + 1) % len(ring)]
-    a, b = here - before, after - here
-    return bool(abs(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)) > SHARP)
-
-
-def _meet(
-    start: Array, bond: Array, first: Array, last: Array, low: float = 0.0, high: float = 1.0
-) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Position on the edges, share of the bonds, and whether they meet there.
-
-    They do where the share lies between `low` and `high`.
-    """
-    along, away = last - first, first - start
-    cross = bond[..., 0] * along[..., 1] - bond[..., 1] * along[..., 0]
-    parallel = np.abs(cross) < 1e-12 * np.hypot(*bond.T) * np.hypot(*np.atleast_2d(along).T)
-    cross = np.where(parallel, 1.0, cross)
-    share = (away[..., 0] * along[..., 1] - away[..., 1] * along[..., 0]) / cross
-    position = (away[..., 0] * bond[..., 1] - away[..., 1] * bond[..., 0]) / cross
-    valid = ~parallel & (share >= low - _TIE) & (share <= high + _TIE)
-    valid &= (position >= -_TIE) & (position <= 1 + _TIE)
-    return position, share, valid

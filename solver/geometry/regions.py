@@ -284,13 +284,15 @@ def rectangle(
 class Crack:
     """Cut along the polyline through `points`; bonds that cross it are cut.
 
-    An end that lies in the body is a tip and belongs to the uncut material: a bond through the
-    very tip stays. The mouth of an edge crack is best drawn a little outside the body.
+    Cracks may share ends, cross, branch and overlap: they act as the one set of points that they
+    are, see `solver.geometry.crack_set`. An end that lies in the body is a tip and belongs to the
+    uncut material: a bond through the very tip stays. One on the body's edge, beyond it, or less
+    than half a cell before it is a mouth.
 
     Raises
     ------
     ValueError
-        If there are fewer than two points, two successive ones coincide, or one is not finite.
+        If there are fewer than two points, all coincide, or one is not finite.
 
     Examples
     --------
@@ -306,8 +308,11 @@ class Crack:
             raise ValueError(f"a crack runs through two or more points of the plane, not {points}")
         if not np.all(np.isfinite(array)):
             raise ValueError(f"a crack with a point that is not finite: {points}")
-        if np.any(np.linalg.norm(np.diff(array, axis=0), axis=1) == 0):
-            raise ValueError(f"a crack with a piece of no length: {points}")
+        # A point drawn twice is one.
+        fresh = np.append(True, (np.diff(array, axis=0) != 0).any(axis=1))
+        array = array[fresh]
+        if len(array) < 2:
+            raise ValueError(f"a crack of no length: {points}")
         object.__setattr__(self, "points", tuple((float(x), float(y)) for x, y in array))
 
     def moved(self, by: Point, grid: float = 0.0) -> Crack:

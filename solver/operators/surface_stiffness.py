@@ -179,10 +179,19 @@ class SurfaceStiffness:
         links = adjacency + adjacency.T
         laplacian = sparse.diags_array(links.sum(axis=0)) - links
         blocks = sparse.block_diag([laplacian] * self.components)
-        scale = _SINGULAR**0.5 * np.abs(self.matrix.diagonal()).mean()
+        scale = _SINGULAR**0.75 * np.abs(self.matrix.diagonal()).mean()
         self.matrix = sparse.csc_array(self.matrix + scale * blocks)
         self._hold()
-        return splu(self._free_matrix, **options)
+        try:
+            return splu(self._free_matrix, **options)
+        except RuntimeError:
+            # A scrap of surface that one bond or two end at, alone: it follows them where they do
+            # not leave it undecided, so that hardly any stiffness on it makes no difference.
+            hardly = _SINGULAR * np.abs(self.matrix.diagonal()).mean()
+            size = self.matrix.shape[0]
+            self.matrix = sparse.csc_array(self.matrix + hardly * sparse.eye_array(size))
+            self._hold()
+            return splu(self._free_matrix, **options)
 
     def energy(self, values: Array, nodal: Array, others: Array, other_nodal: Array) -> float:
         """Half the mutual energy of two fields, per volume of a particle.

@@ -12,7 +12,18 @@ import numpy as np
 from ..arrays import Array, Mask
 from ..bonds import Bonds
 from ..errors import MechanismError, SceneError
-from ..geometry import Crack, Lattice, Outline, Quadrature, on_edges, on_particles, volumes
+from ..geometry import (
+    Body,
+    Crack,
+    CrackSet,
+    Frame,
+    Lattice,
+    Outline,
+    Quadrature,
+    on_edges,
+    on_particles,
+    volumes,
+)
 from ..material import Family, Moduli, Stability, calibrated, require_admissible
 from ..operators import BondOperator
 from . import cautions, mechanisms
@@ -327,7 +338,8 @@ def edge_loads(scene: Description, lattice: Lattice, sharp_tips: bool = True) ->
     if not edges:
         return []
     near = lattice.centred
-    outline = Outline.of(near.region, _moved(scene.cracks, lattice), near.spacing, sharp_tips)
+    cracks = CrackSet.joined(Frame.of(near), _moved(scene.cracks, lattice), Body.of(near))
+    outline = Outline.of(near.region, cracks, near.spacing, sharp_tips)
     return [edge(outline, near.shift) for edge in edges]
 
 

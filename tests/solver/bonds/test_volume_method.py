@@ -68,7 +68,7 @@ def test_a_thin_layer_is_no_surface_either():
 def test_factors_of_random_bodies(mask, seed, rule):
     mask[2:4, 1:6] = True
     held = np.random.default_rng(seed).random(mask.sum()) < 0.3
-    family, crack = Family(2, 0.5, rule), Crack((0.6, 1.5), (2.3, 1.6))
+    family, crack = Family(2, 0.5, rule), Crack((1.1, 1.5), (2.3, 1.6))
     lattice = Lattice(Cells(mask, 0.5), 0.5, family.reach)
     bonds = Bonds(lattice, family, [crack], "volume", held)
     judge = cut_by(lattice, crack)

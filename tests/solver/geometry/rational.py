@@ -68,3 +68,43 @@ def stays_inside(p, q, rings):
         if not held(point, rings):
             return False
     return True
+
+
+# A displacement far smaller than what distinguishes points on a grid of eighths.
+TINY = Fraction(1, 2**14)
+
+
+def directions(point, pieces):
+    """Directions in which pieces run on from a point, up to length."""
+    found = []
+    for a, b in pieces:
+        if not on_segment(point, a, b):
+            continue
+        for end in (a, b):
+            ray = minus(end, point)
+            if ray != (0, 0) and not any(
+                cross(ray, other) == 0 and ray[0] * other[0] + ray[1] * other[1] > 0
+                for other in found
+            ):
+                found.append(ray)
+    return found
+
+
+def is_cut(p, q, pieces):
+    """Whether pieces part p from q: tips do not, and who lies on a piece lies above it."""
+
+    def as_it_counts(point):
+        if len(directions(point, pieces)) < 2:
+            return point
+        return point[0] + TINY**2, point[1] + TINY
+
+    p, q = as_it_counts(p), as_it_counts(q)
+    d = minus(q, p)
+    for a, b in pieces:
+        if cross(d, minus(b, a)) == 0:
+            continue
+        for share in shares(p, q, a, b):
+            met = p[0] + share * d[0], p[1] + share * d[1]
+            if len(directions(met, pieces)) != 1:
+                return True
+    return False
