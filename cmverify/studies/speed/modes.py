@@ -18,7 +18,7 @@ from threadpoolctl import threadpool_limits
 
 from cmverify.case import Array
 from cmverify.cases.modes.tetrachiral import scene
-from cmverify.studies.speed.measure import Row
+from cmverify.studies.speed.measure import Timing
 from solver import Discretisation, modes
 from solver.operators.assembled import to_csr
 from solver.operators.mass import inertia
@@ -26,7 +26,7 @@ from solver.operators.mass import inertia
 COUNT = 10
 
 
-def compare(resolution: int) -> list[Row]:
+def compare(resolution: int) -> list[Timing]:
     """The tetrachiral square at 25ℓ over the resolution, m = 5, bonds ended at the surface.
 
     Times are CPU seconds from a scene (ours) or a matrix (the others) to ten elastic modes.
@@ -44,7 +44,7 @@ def compare(resolution: int) -> list[Row]:
     mass = sparse.diags_array(weights.ravel())
     squares = found.frequencies**2 * float(body.density or 0.0)
     rows = [
-        Row(
+        Timing(
             "ours, LOBPCG two-level",
             {
                 "unknowns": matrix.shape[0],
@@ -83,7 +83,7 @@ def _row(
     matrix: sparse.csr_array,
     mass: sparse.dia_array,
     squares: Array,
-) -> Row:
+) -> Timing:
     elastic = np.sort(values)[3 : 3 + COUNT]
     # Copies of double modes that Lanczos loses shift all that follow.
     lost = int((np.abs(elastic / squares - 1) > 1e-6).sum())
@@ -92,7 +92,7 @@ def _row(
         left = matrix @ vectors[:, 3:] - (mass @ vectors[:, 3:]) * values[3:]
         size = np.linalg.norm((mass @ vectors[:, 3:]) * values[3:], axis=0)
         found["largest residual"] = float((np.linalg.norm(left, axis=0) / size).max())
-    return Row(name, found)
+    return Timing(name, found)
 
 
 def _shift_invert(
