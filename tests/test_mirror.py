@@ -33,6 +33,9 @@ ELSEWHERE = {
     "cmverify/cases/recovered.py": "tests/cmverify/faults/test_table.py",
     "cmverify/cases/solids.py": "tests/cmverify/faults/test_table.py",
     "cmverify/cases/yardsticks.py": "tests/cmverify/faults/test_table.py",
+    "cmverify/cases/modes/pairing.py": "tests/convergence/test_cases.py",
+    "cmverify/cases/modes/plates.py": "tests/convergence/test_cases.py",
+    "cmverify/cases/modes/tetrachiral.py": "tests/convergence/test_cases.py",
     # Tables and the command that prints them.
     "cmverify/faults/changes.py": "tests/cmverify/faults/test_fault.py",
     "cmverify/faults/command.py": "tests/cmverify/faults/test_table.py",
@@ -45,6 +48,7 @@ ELSEWHERE = {
     "cmverify/judge/norms.py": "tests/cmverify/judge/test_verdict.py",
     "cmverify/report/figures.py": "tests/cmverify/report/test_build.py",
     "cmverify/report/picture.py": "tests/cmverify/report/test_build.py",
+    "cmverify/report/stages.py": "tests/cmverify/report/test_build.py",
     "cmverify/report/style.py": "tests/cmverify/report/test_build.py",
     "cmverify/report/summary.py": "tests/cmverify/report/test_build.py",
     "cmverify/report/terminal.py": "tests/cmverify/test_cli.py",

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cmverify.errata import TESTS, Judgement, coverage_line
-from cmverify.report.build import Picture
+from cmverify.report.picture import Picture
 from cmverify.run.results import write_text
 
 if TYPE_CHECKING:
