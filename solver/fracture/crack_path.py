@@ -20,7 +20,7 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 
 from ..arrays import Array, Indices
-from ..geometry import Crack, Region
+from ..geometry import Crack, CrackSet, Frame, Region
 
 #: Longest bond that marks the path, in cells.
 SHORT = np.sqrt(2.0) * (1 + 1e-9)
@@ -28,6 +28,8 @@ SHORT = np.sqrt(2.0) * (1 + 1e-9)
 _LINK, _FIRST = 1.5, 2.0
 # Shortest crack that begins by itself, in cells.
 _CRACK = 2.0
+# Share of the body's size within which ends of cracks are one.
+_MET = 1e-7
 
 
 @dataclass(frozen=True)
@@ -65,12 +67,18 @@ class CrackPath:
 
 
 def initial_tips(cracks: Sequence[Crack], region: Region) -> Array:
-    """Ends of the cracks that lie in the body, shape (n, 2)."""
+    """Tips of the cracks, taken as one set, that lie in the body, shape (n, 2)."""
     ends = [end for c in cracks if not c.closed for end in (c.points[0], c.points[-1])]
     if not ends:
         return np.zeros((0, 2))
-    points = np.array(ends)
-    return points[region.contains(points[:, 0], points[:, 1])]
+    x0, y0, x1, y1 = region.bounds
+    size = max(x1 - x0, y1 - y0)
+    # Fine enough for whatever is drawn in the body.
+    free = CrackSet.joined(Frame(np.array([x0, y0]), size / 1024), cracks).free_ends()
+    points = np.array(list(dict.fromkeys(ends)))
+    away = np.hypot(*(points[:, None] - free[None]).transpose(2, 0, 1))
+    tip = away.min(axis=1, initial=np.inf) < _MET * size
+    return points[tip & region.contains(points[:, 0], points[:, 1])]
 
 
 def trace(

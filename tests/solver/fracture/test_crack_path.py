@@ -23,11 +23,18 @@ ORIGIN = np.zeros((1, 2))
 
 
 def test_tips_are_the_ends_that_lie_in_the_body():
-    cracks = [Crack((-2, 0), (0, 0)), Crack((0.3, 0.3), (0.5, 0.3)), Crack((0, 2), (0, -2))]
+    cracks = [Crack((-2, 0), (0, 0)), Crack((0.3, 0.3), (0.5, 0.3)), Crack((0.9, 2), (0.9, -2))]
     loop = Crack((0.1, 0), (0.2, 0), (0.2, 0.1), (0.1, 0))
     tips = initial_tips([*cracks, loop], disc(1.0))
     assert tips.tolist() == [[0.0, 0.0], [0.3, 0.3], [0.5, 0.3]]
     assert initial_tips([], disc(1.0)).shape == (0, 2)
+
+
+def test_ends_that_meet_other_cracks_are_no_tips():
+    trunk, branch = Crack((-0.5, 0.0), (0.1, 0.0)), Crack((0.5, 0.0), (0.1, 0.0))
+    side = Crack((-0.2, 0.3), (-0.2, 0.0))
+    tips = initial_tips([trunk, branch, side], disc(1.0))
+    np.testing.assert_array_equal(tips, [(-0.5, 0.0), (0.5, 0.0), (-0.2, 0.3)])
 
 
 def test_a_straight_row_of_marks():
