@@ -14,12 +14,14 @@ from typing import Any
 
 import numpy as np
 from scipy import sparse
+from scipy.sparse.linalg import LinearOperator
 from threadpoolctl import threadpool_limits
 
 from ..arrays import Array, Mask
 from ..errors import ConvergenceError, MechanismError, NegativeCurvatureError, SceneError
-from ..linear import eigen, method
+from ..linear import TwoLevel, eigen, method
 from ..linear.condensed import Condensed
+from ..linear.two_level import LARGEST_COARSE
 from ..material.physics import ELASTICITY
 from ..operators.assembled import to_csr
 from ..operators.mass import inertia
@@ -38,6 +40,9 @@ _DENSE_MOST = 6_000
 _MOST = 300
 # Unknowns up to which pairs are counted by a factorisation; larger bodies are searched again.
 _COUNTED = 5_000
+# Of the preconditioner: distance of coarse nodes (cells) and products of smoothing. So many vectors
+# share its set-up that closer nodes and less smoothing than in statics take a quarter less.
+_COARSENING, _DEGREE = 4, 1
 # Searches after a pair was missed.
 _REPEATS = 3
 
@@ -303,7 +308,10 @@ class _Search:
 
     def _pencil(self) -> eigen.Pencil:
         operator, kind = self.operator, self.discretisation.stability.kind
-        inverse = method.preconditioner(operator, kind, "two-level")
+        most = int(np.ceil(np.sqrt(operator.shape[0] / LARGEST_COARSE)))
+        inverse: LinearOperator = TwoLevel(
+            method.positive(operator, kind), max(_COARSENING, most), _DEGREE
+        )
         fixed, mass, rigid = operator.identity_rows, self.mass, self.rigid
         self.name = "LOBPCG, two-level"
         if not self.indefinite:

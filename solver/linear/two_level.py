@@ -33,7 +33,7 @@ from .coarse import Hats
 # and anisotropy stronger, so nodes are closer. Larger lattices coarsen more, so that the
 # factorisation stays small beside the products.
 _COARSENING = {1: 6, 2: 8, 3: 8}
-_LARGEST_COARSE = 60_000
+LARGEST_COARSE = 60_000
 # Ratio of the ends of the interval on which the polynomial is small: shorter waves than the
 # coarse grid resolves.
 _RATIO = 5.0
@@ -128,7 +128,7 @@ class TwoLevel(LinearOperator):
         self.operator, self.degree = operator, int(degree)
         self.jacobi = BlockJacobi(operator)
         if coarsening is None:
-            largest = np.sqrt(operator.shape[0] / _LARGEST_COARSE)
+            largest = np.sqrt(operator.shape[0] / LARGEST_COARSE)
             coarsening = max(_COARSENING[operator.components], int(np.ceil(largest)))
         self.hats = Hats(operator, coarsening)
         self._regularisation = regularisation

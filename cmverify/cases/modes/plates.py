@@ -180,8 +180,8 @@ BOUNDS = {
     ),
     "hole": (
         {24: 0.045, 50: 0.007, 100: 0.002},
-        OrderBand(1.5, 2.6, since=50),
-        "0.2 % at L/100; a hole of five cells is coarse",
+        OrderBand(1.2, 2.6, since=50),
+        "0.2 % at L/100 (measured 0.11 %); a hole of five cells is coarse, so that orders scatter",
     ),
 }
 

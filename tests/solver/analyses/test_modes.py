@@ -97,7 +97,8 @@ def test_lame_mode_of_a_free_square_converges_at_second_order(more):
     ],
 )
 def test_iterations_find_what_a_dense_solver_finds(material, surface, monkeypatch):
-    scene = plate(8, material, surface=surface)
+    # Condensing takes an inner solve for every product: a smaller body.
+    scene = plate(8 if material is not INDEFINITE else 6, material, surface=surface)
     exact = modes.solve(scene, 9)
     assert exact.statistics["method"] == "dense"
     iterate(monkeypatch)
