@@ -199,7 +199,8 @@ CASES = (
             *(Check(m.name, "beyond the fibres", {2: 5.0},
                     source="the cheapest direction is the fibres', the largest G nearer to ahead")
               for m in _TURNED),
-            *(Check(m.name, "undercut", {2: 0.1}, source="no cut costs less than along the fibres")
+            *(Check(m.name, "undercut", {3: 0.1}, source="no cut costs less than along the fibres; "
+                    "paths are known to a cell at each end, too little at the coarsest")
               for m in _ALL),
             *(Check(m.name, "balance", {2: 1e-6}, source="the solver's tolerance of 1e-8")
               for m in _ALL),

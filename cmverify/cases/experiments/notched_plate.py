@@ -91,7 +91,7 @@ class Plate:
         return lead(
             scene,
             Toughness(TOUGHNESS),
-            Programme(stop=1.5, increment=STEP if n >= 5 else 50 * STEP, least_force=0.02),
+            Programme(stop=3.0, increment=STEP if n >= 5 else 50 * STEP, least_force=0.02),
             no_fail=whole,
             batch=max(22, 22 * n // 5),
             max_solves=2_500,
@@ -169,10 +169,10 @@ def _method(name: str, plate: Plate, **ladder: tuple[int, ...]) -> Method:
 
 
 _METHODS = (
-    _method("rims", Plate(), quick=(3,), standard=(5,), paper=(5, 10)),
+    _method("rims", Plate(), standard=(5,), paper=(5, 10)),
     _method("pins", Plate(turning=True), standard=(5,), paper=(5, 10)),
     _method("pins, extrapolated", Plate(True, "extrapolated"), standard=(5,), paper=(5,)),
-    _method("pins m=3", Plate(True, m=3), standard=(5,), paper=(10,)),
+    _method("pins m=3", Plate(True, m=3), quick=(3,), standard=(5,), paper=(10,)),
     _method("pins m=7", Plate(True, m=7), paper=(10,)),
 )
 _NAMES = tuple(method.name for method in _METHODS)
@@ -207,7 +207,7 @@ CASES = (
             **DESCRIPTIONS,
         },
         primary="stiffness",
-        featured="pins",
+        featured="pins m=3",
         length="a",
         timed=False,
     ),
