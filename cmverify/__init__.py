@@ -32,6 +32,7 @@ __all__ = [
     "Crack",
     "Discretisation",
     "ElasticTensor",
+    "ElectricConductivityTensor",
     "Family",
     "Fourfold",
     "InadmissibleMaterialError",

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from . import bonds as bond_room
 from .arrays import Array
 from .material import Family, Moduli
-from .material.physics import ELASTICITY, HEAT, Physics
+from .material.physics import ELASTICITY, ELECTRICITY, HEAT, Physics
 from .material.strains import directions, elongations
 from .state import State
 
@@ -208,12 +208,12 @@ def _crossings(offset: NDArray[np.int64], axis: int) -> Iterator[tuple[tuple[int
 
 
 def flux(solution: State, rule: Literal["consistent", "hotter"] = "consistent") -> Array:
-    """Heat flux (or current density) at the particles.
+    """Heat flux at the particles.
 
     Parameters
     ----------
     solution : Solution, or the State of any analysis
-        Of a conductive scene.
+        Of a scene of heat conduction.
     rule : {"consistent", "hotter"}
         ``consistent``: −½ Σ k g n α Δv over the whole family, the half sum that a homogeneous
         gradient makes exact. ``hotter``: Eq. 170 over the hotter neighbours only, with the sign
@@ -231,6 +231,29 @@ def flux(solution: State, rule: Literal["consistent", "hotter"] = "consistent") 
     _need(solution, HEAT, "flux")
     if rule not in ("consistent", "hotter"):
         raise ValueError(f"unknown flux rule {rule!r}; known: consistent, hotter")
+    return _flow(solution, rule)
+
+
+def current_density(solution: State) -> Array:
+    """Current density j at the particles, shape (N, 2), A/m²: `flux` with φ for T.
+
+    −½ Σ k g n α Δv over the whole family, which a homogeneous field makes exact.
+    """
+    _need(solution, ELECTRICITY, "a current density")
+    return _flow(solution, "consistent")
+
+
+def joule_heat(solution: State) -> Array:
+    """Heat that the current makes, j·E, shape (N,), W/m³.
+
+    A pair gives off k g² α Δv² (its current times its voltage), twice its share of the
+    macro-potential of Eq. 115.
+    """
+    _need(solution, ELECTRICITY, "Joule heat")
+    return 2.0 * strain_energy_density(solution)
+
+
+def _flow(solution: State, rule: str) -> Array:
     body = solution.discretisation
     result = np.zeros((2, body.lattice.count))
     for pair in _pairs(solution):
@@ -323,8 +346,13 @@ def _fluxes(solution: State) -> dict[str, Array]:
     return {"flux": flux(solution)}
 
 
+def _currents(solution: State) -> dict[str, Array]:
+    return {"current_density": current_density(solution)}
+
+
 #: Recovered fields of each physics.
 _RECOVERED: dict[str, Callable[[State], dict[str, Array]]] = {
     ELASTICITY.name: _stresses,
     HEAT.name: _fluxes,
+    ELECTRICITY.name: _currents,
 }

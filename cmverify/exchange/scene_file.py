@@ -255,10 +255,15 @@ def _region(table: Any) -> Region:
 
 
 def _material(table: Any) -> Any:
-    from solver import ConductivityTensor, ElasticTensor
+    from solver import ConductivityTensor, ElasticTensor, ElectricConductivityTensor
 
     if table.kind == "conductivity":
         material: Any = ConductivityTensor(table.tensor)
+    elif table.kind == "electric":
+        if table.tensor is not None:
+            material = ElectricConductivityTensor(table.tensor)
+        else:
+            material = ElectricConductivityTensor.of_resistivities(*table.resistivities)
     elif table.kind == "elastic":
         material = ElasticTensor(table.voigt)
     else:

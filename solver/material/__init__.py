@@ -8,6 +8,7 @@ from .laws import AngularLaw, Cosine, Fourfold, TwoHarmonic, UniformShear
 from .moduli import (
     ConductiveModuli,
     ElasticModuli,
+    ElectricModuli,
     Moduli,
     bond_weights,
     effective_tensor,
@@ -15,7 +16,14 @@ from .moduli import (
 )
 from .stability import Stability, assess
 from .symbol import acoustic_tensor, brillouin_zone, condensed_symbol, margins
-from .tensors import ConductivityTensor, ElasticTensor, Material, Plane, stress_rotation
+from .tensors import (
+    ConductivityTensor,
+    ElasticTensor,
+    ElectricConductivityTensor,
+    Material,
+    Plane,
+    stress_rotation,
+)
 
 __all__ = [
     "CONSTANT",
@@ -27,6 +35,8 @@ __all__ = [
     "Cosine",
     "ElasticModuli",
     "ElasticTensor",
+    "ElectricConductivityTensor",
+    "ElectricModuli",
     "Family",
     "Fourfold",
     "Influence",

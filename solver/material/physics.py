@@ -115,3 +115,17 @@ HEAT = Physics(
     unheld="no temperature is prescribed on {place}: its level is undetermined",
     storage="heat_capacity",
 )
+
+ELECTRICITY = Physics(
+    name="electrical conduction",
+    adjective="an electrically conductive",
+    unknowns=("φ",),
+    turning=(False,),
+    fields={"potential": (0,)},
+    supports={"potential": (0,)},
+    loads={"current": (0,), "source": (0,), "inflow": (0,)},
+    motions=_level,
+    motion_names=("level",),
+    unheld="{place} is a floating conductor: no potential is prescribed on it, its level is "
+    "undetermined",
+)

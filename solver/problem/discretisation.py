@@ -26,7 +26,7 @@ from ..geometry import (
 )
 from ..material import Family, Moduli, Stability, calibrated, require_admissible
 from ..operators import BondOperator
-from . import cautions, mechanisms
+from . import cautions, leads, mechanisms
 from . import constraints as constraints_of
 from .conditions import evaluate
 from .constraints import Constraints
@@ -107,6 +107,7 @@ class Discretisation:
         lattice = Lattice(scene.region, scene.spacing, family.reach, scene.phase)
         cracks = _moved(scene.cracks, lattice)
         prescribed, values = _supports(scene, lattice, moduli)
+        leads.check(scene, lattice, prescribed)
         relating = [support for support in scene.supports if support.constrains]
         constraints = constraints_of.build(relating, lattice, moduli, prescribed, values)
         load = _loads(scene, lattice, moduli)
