@@ -33,6 +33,7 @@ __all__ = [
     "Discretisation",
     "ElasticTensor",
     "ElectricConductivityTensor",
+    "ExpansionTensor",
     "Family",
     "Fourfold",
     "InadmissibleMaterialError",

@@ -37,7 +37,10 @@ class _Pair:
 
 
 def _pairs(solution: State) -> Iterator[_Pair]:
-    """The bonds of each offset: differences (components, N) and strains (strains, N)."""
+    """The bonds of each offset: differences (components, N) and strains (strains, N).
+
+    Strains are mechanical: less what a temperature strains without stress.
+    """
     body = solution.discretisation
     lattice, family, bonds, moduli = body.lattice, body.family, body.bonds, body.moduli
     # Parts set aside are NaN and have no bonds: zeros keep them from spoiling their neighbours,
@@ -51,6 +54,8 @@ def _pairs(solution: State) -> Iterator[_Pair]:
         normal = np.broadcast_to(family.normal[o][:, None], (2, lattice.count))
         turn = 0.5 * length * (there[-1] + known[-1]) if moduli.turns else np.zeros(lattice.count)
         strains = elongations(moduli.strains, normal, there - known, turn) / length
+        if body.eigenstrain is not None:
+            strains -= body.eigenstrain.of_offset(o)
         yield _Pair(
             o,
             float(family.weight[o] * family.cell_area),
@@ -95,6 +100,8 @@ def _ends(solution: State) -> _Ends | None:
         np.nan_to_num(solution.unknowns[:, surface.particles]),
         nodal,
     )
+    if body.eigenstrain is not None:
+        strains = strains - body.eigenstrain.of_ended(ended)
     weight = family.weight[ended.offset] * family.cell_area
     return _Ends(ended.particle, ended.offset, weight, ended.length, difference, strains)
 

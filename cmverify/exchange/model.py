@@ -244,6 +244,14 @@ class Couple(Table):
     where: Condition | None = None
 
 
+class Temperature(Table):
+    """A change of temperature that strains the body."""
+
+    kind: Literal["temperature"]
+    value: Scalar = Field(description="K")
+    expansion: Matrix2 = Field(description="In the plane, 1/K; in plane strain the effective one")
+
+
 class Source(Table):
     """A source of heat."""
 
@@ -300,7 +308,7 @@ class Flux(Table):
 
 
 Load = Annotated[
-    BodyForce | Couple | Source | Current | LeadCurrent | Traction | Stress | Flux,
+    BodyForce | Couple | Temperature | Source | Current | LeadCurrent | Traction | Stress | Flux,
     Field(discriminator="kind"),
 ]
 

@@ -121,10 +121,10 @@ def plate_between_leads(
     centres = mesh.points[mesh.triangles].mean(axis=1)
     for lead in leads:
         if lead.potential is not None:
-            values[lead.holds(*nodes.T, margin)] = lead.potential
+            values[lead.holds(nodes[:, 0], nodes[:, 1], margin)] = lead.potential
             continue
         assert lead.current is not None
-        inside = np.flatnonzero(lead.holds(*centres.T, 0.0))
+        inside = np.flatnonzero(lead.holds(centres[:, 0], centres[:, 1], 0.0))
         area = (lead.x1 - lead.x0) * (lead.y1 - lead.y0)
         part = skfem.Basis(triangulation, ELEMENTS[order](), elements=inside)
         load += feed.assemble(part) * (lead.current / area)
@@ -176,7 +176,7 @@ def _mesh(
         if (x0 != x1) == (y0 != y1):
             raise ValueError("the slit must run along x or along y")
         box = Lead(min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1), current=0.0)
-        on = box.holds(*points.T, 1e-6 * size)
+        on = box.holds(points[:, 0], points[:, 1], 1e-6 * size)
         edges = regular.facets.T.astype(np.int64)
         points, triangles, _ = split_along(points, triangles, edges[on[edges].all(axis=1)])
     boundaries["edge"] = boundary_edges(triangles)

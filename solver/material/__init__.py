@@ -2,6 +2,7 @@
 
 from .admission import calibrated, remedy, require_admissible
 from .calibration import Calibration, calibrate, representable, representable_by_directions
+from .expansion import ExpansionTensor
 from .family import AreaRule, Family
 from .influence import CONSTANT, Influence
 from .laws import AngularLaw, Cosine, Fourfold, TwoHarmonic, UniformShear
@@ -37,6 +38,7 @@ __all__ = [
     "ElasticTensor",
     "ElectricConductivityTensor",
     "ElectricModuli",
+    "ExpansionTensor",
     "Family",
     "Fourfold",
     "Influence",

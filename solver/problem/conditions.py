@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array, Mask
 from ..errors import SceneError
 from ..geometry import Lattice, Outline, Point, Quadrature, Region, Where, select, volumes
+from ..material import ExpansionTensor
 from ..material.physics import Physics
 
 # Points of a line load in every cell.
@@ -289,7 +290,7 @@ class Load:
 
     Attributes
     ----------
-    kind : {"force", "couple", "source", "current", "traction", "inflow"}
+    kind : {"force", "couple", "temperature", "source", "current", "traction", "inflow"}
         Body force (N/m³, two components), body couple (N m/m³), source of heat (W/m³) or current
         (A/m³); on edges traction (Pa, two components) and inflow of heat (W/m²) or current (A/m²).
     density : callable, optional
@@ -303,6 +304,9 @@ class Load:
         Of a load that depends on time: time (s) → the load then.
     electrode : Region or callable, optional
         Of a lead (`lead`), which must lie in the body and touch no other.
+    strain : callable, optional
+        Of a temperature: places, whether they are the surface's nodes → the strain (ε11, ε22,
+        2 ε12) that it would cause without stress, (n, 3).
     """
 
     kind: str
@@ -310,6 +314,7 @@ class Load:
     edge: Callable[[Outline, Point], Quadrature] | None = None
     points: Callable[[float], tuple[Array, Array]] | None = None
     electrode: Where | None = None
+    strain: Callable[[Array, bool], Array] | None = None
     instant: Callable[[float], Load] | None = None
 
     @property
@@ -380,6 +385,41 @@ class Load:
     def couple(cls, couple: Value, where: Where | None = None) -> Load:
         """Body couple c, N m/m³."""
         return cls._body("couple", couple, 1, where)
+
+    @classmethod
+    def temperature(
+        cls, change: Value, expansion: ExpansionTensor, at_surface: Value | None = None
+    ) -> Load:
+        """A change of temperature, K, that strains the body by ε = A T without stress.
+
+        The stress of a solution, and its energy, are those of what the displacement strains it
+        beyond that. Several add up.
+
+        Parameters
+        ----------
+        change : value
+        expansion : ExpansionTensor
+            In plane strain the plane's effective one.
+        at_surface : value, optional
+            The change at the surface's nodes where `change` is one value a particle and bonds end
+            at the surface (``extrapolated``): `State.surface_temperature` of the conduction
+            problem on the same body.
+        """
+        if not isinstance(expansion, ExpansionTensor):
+            raise SceneError(
+                f"a temperature needs the solid's ExpansionTensor, not {type(expansion).__name__}"
+            )
+
+        def strain(places: Array, surface: bool) -> Array:
+            value = change if not surface or at_surface is None else at_surface
+            if surface and not callable(value) and np.ndim(value) and at_surface is None:
+                raise SceneError(
+                    "a temperature of one value a particle says nothing of the surface, where "
+                    "bonds end: give at_surface, or a function of (x, y)"
+                )
+            return evaluate(value, places, 1, "a temperature") * expansion.voigt
+
+        return cls("temperature", strain=strain)
 
     @classmethod
     def source(cls, source: Value, where: Where | None = None) -> Load:

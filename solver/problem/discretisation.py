@@ -26,6 +26,7 @@ from ..geometry import (
 )
 from ..material import Family, Moduli, Stability, calibrated, require_admissible
 from ..operators import BondOperator
+from ..operators.eigenstrain import Eigenstrain
 from . import cautions, leads, mechanisms
 from . import constraints as constraints_of
 from .conditions import evaluate
@@ -54,6 +55,8 @@ class Discretisation:
         Wall time that building all this took.
     constraints : Constraints, optional
         Of rigid pins and tied unknowns; slaves are among the prescribed.
+    eigenstrain : Eigenstrain, optional
+        Of temperatures; the loads hold what it exerts.
     """
 
     scene: Description
@@ -69,6 +72,7 @@ class Discretisation:
     nodal_load: Array | None
     seconds: float
     constraints: Constraints | None = None
+    eigenstrain: Eigenstrain | None = None
 
     @classmethod
     def of(
@@ -152,6 +156,7 @@ class Discretisation:
                 "a load on an edge acts on a part that nothing holds: hold it, or leave it out of "
                 "the load (where=...)"
             )
+        eigenstrain = _eigenstrain(scene, lattice, operator, load, nodal_load)
         seconds = perf_counter() - begun
         return cls(
             scene,
@@ -167,6 +172,7 @@ class Discretisation:
             nodal_load,
             seconds,
             constraints,
+            eigenstrain,
         )
 
     @property
@@ -407,3 +413,31 @@ def _concentrate(
             point, particle, share = on_particles(near, cracks, places[inside])
             for unknown, values in zip(unknowns, force, strict=True):
                 np.add.at(load[unknown], particle, share * values[inside][point])
+
+
+def _eigenstrain(
+    scene: Description,
+    lattice: Lattice,
+    operator: BondOperator,
+    load: Array,
+    nodal_load: Array | None,
+) -> Eigenstrain | None:
+    """What temperatures strain; their forces are added to `load` and `nodal_load`."""
+    acting = [item.strain for item in scene.loads if item.strain is not None]
+    if not acting:
+        return None
+    surface = operator.ended_stiffness
+    particles = sum(strain(lattice.places, False).T for strain in acting)
+    nodes = None
+    if surface is not None:
+        at = surface.ended.outline.nodes + lattice.centred.shift
+        # Nodes at which no bond ends feel nothing: a value a node is one of those that do.
+        nodes = np.zeros((3, len(at)))
+        nodes[:, surface.nodes] = sum(strain(at[surface.nodes], True).T for strain in acting)
+    found = Eigenstrain(operator.bonds, operator.moduli, np.asarray(particles), nodes)
+    load += found.load()
+    if surface is not None and nodal_load is not None:
+        on_particles, on_nodes = found.surface_load(surface)
+        load += on_particles
+        nodal_load += on_nodes
+    return found
