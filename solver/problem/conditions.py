@@ -419,6 +419,8 @@ class Load:
                 )
             return evaluate(value, places, 1, "a temperature") * expansion.voigt
 
+        if in_time(change) or in_time(at_surface):
+            raise SceneError("a temperature that strains a body is known to statics only: f(x, y)")
         return cls("temperature", strain=strain)
 
     @classmethod

@@ -90,7 +90,8 @@ class Discretisation:
         sharp_tips : bool
         constrained : bool
             Whether the caller knows rigid pins and tied unknowns. Slaves are among the
-            `prescribed`: who does not ask for `constraints` would take them for clamped.
+            `prescribed`: who does not ask for `constraints` would take them for clamped. Nor
+            do others know that temperatures strain bonds.
         free : bool
             Whether parts that no support holds are no fault: bodies may move in time.
 
@@ -107,6 +108,10 @@ class Discretisation:
             raise SceneError(
                 "rigid pins and equal unknowns (Support.pin, Support.equal) are known to statics "
                 "and fracture only: prescribe displacements instead"
+            )
+        if not constrained and any(load.strain is not None for load in scene.loads):
+            raise SceneError(
+                "temperatures that strain a body (Load.temperature) are known to statics only"
             )
         lattice = Lattice(scene.region, scene.spacing, family.reach, scene.phase)
         cracks = _moved(scene.cracks, lattice)

@@ -97,7 +97,9 @@ def test_forces_of_a_temperature_balance_and_add_up(surface):
     material, hot = ElasticTensor.isotropic(1.0, 0.2), lambda x, y: np.sin(3 * x) + y**2
 
     def parts(*loads):
-        return Scene(PLATE, STEP, material, FREE, loads, m=2, surface=surface).discretise()
+        return Scene(PLATE, STEP, material, FREE, loads, m=2, surface=surface).discretise(
+            constrained=True
+        )
 
     first, second = Load.temperature(hot, tensor(1)), Load.temperature(oblique, tensor(2))
     both = parts(first, second)
@@ -139,3 +141,12 @@ def test_who_does_not_know_temperatures_says_so():
         grow(scene, Toughness(1.0), Programme(stop=1.0))
     with pytest.raises(SceneError, match="ExpansionTensor"):
         Load.temperature(1.0, 1e-5)
+
+
+def test_neither_waves_nor_functions_of_time_know_temperatures():
+    load = Load.temperature(1.0, ExpansionTensor.isotropic(1e-5))
+    scene = Scene(PLATE, STEP, ElasticTensor.isotropic(1.0, 0.2), FREE, [load], m=2)
+    with pytest.raises(SceneError, match="known to statics only"):
+        scene.discretise()
+    with pytest.raises(SceneError, match="known to statics only"):
+        Load.temperature(lambda x, y, t: x * t, ExpansionTensor.isotropic(1e-5))
