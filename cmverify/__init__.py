@@ -32,6 +32,8 @@ __all__ = [
     "Crack",
     "Discretisation",
     "ElasticTensor",
+    "ElectricConductivityTensor",
+    "ExpansionTensor",
     "Family",
     "Fourfold",
     "InadmissibleMaterialError",

@@ -95,3 +95,28 @@ def reaction(state: State, where: Where, about: Point | None = None) -> Reaction
         # Rotations are scaled by the spacing, so are couples.
         moment += float(rows[2].sum()) * parts.lattice.spacing
     return Reaction(rows[:2].sum(axis=1), moment, centre)
+
+
+def supply(state: State, where: Where) -> float:
+    """Heat or current that prescribed values feed into the body, W or A per m of thickness.
+
+    Parameters
+    ----------
+    state : State
+        Of a conducting body, a `Solution` for instance.
+    where : Region or callable
+        All particles of the support or lead; what a load feeds in there does not count.
+
+    Raises
+    ------
+    SceneError
+        If no particle is there, or the body does not conduct.
+    """
+    parts = state.discretisation
+    physics = parts.scene.physics
+    if len(physics.unknowns) != 1:
+        raise SceneError(f"{physics.adjective} body conducts nothing that could be supplied")
+    chosen = select(parts.lattice, where)
+    if not chosen.any():
+        raise SceneError("no particle is where a supply is asked for")
+    return float(residual(parts, state.unknowns)[0, chosen].sum() * parts.family.cell_area)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from . import bonds as bond_room
 from .arrays import Array
 from .material import Family, Moduli
-from .material.physics import ELASTICITY, HEAT, Physics
+from .material.physics import ELASTICITY, ELECTRICITY, HEAT, Physics
 from .material.strains import directions, elongations
 from .state import State
 
@@ -37,7 +37,10 @@ class _Pair:
 
 
 def _pairs(solution: State) -> Iterator[_Pair]:
-    """The bonds of each offset: differences (components, N) and strains (strains, N)."""
+    """The bonds of each offset: differences (components, N) and strains (strains, N).
+
+    Strains are mechanical: less what a temperature strains without stress.
+    """
     body = solution.discretisation
     lattice, family, bonds, moduli = body.lattice, body.family, body.bonds, body.moduli
     # Parts set aside are NaN and have no bonds: zeros keep them from spoiling their neighbours,
@@ -51,6 +54,8 @@ def _pairs(solution: State) -> Iterator[_Pair]:
         normal = np.broadcast_to(family.normal[o][:, None], (2, lattice.count))
         turn = 0.5 * length * (there[-1] + known[-1]) if moduli.turns else np.zeros(lattice.count)
         strains = elongations(moduli.strains, normal, there - known, turn) / length
+        if body.eigenstrain is not None:
+            strains -= body.eigenstrain.of_offset(o)
         yield _Pair(
             o,
             float(family.weight[o] * family.cell_area),
@@ -95,6 +100,8 @@ def _ends(solution: State) -> _Ends | None:
         np.nan_to_num(solution.unknowns[:, surface.particles]),
         nodal,
     )
+    if body.eigenstrain is not None:
+        strains = strains - body.eigenstrain.of_ended(ended)
     weight = family.weight[ended.offset] * family.cell_area
     return _Ends(ended.particle, ended.offset, weight, ended.length, difference, strains)
 
@@ -208,12 +215,12 @@ def _crossings(offset: NDArray[np.int64], axis: int) -> Iterator[tuple[tuple[int
 
 
 def flux(solution: State, rule: Literal["consistent", "hotter"] = "consistent") -> Array:
-    """Heat flux (or current density) at the particles.
+    """Heat flux at the particles.
 
     Parameters
     ----------
     solution : Solution, or the State of any analysis
-        Of a conductive scene.
+        Of a scene of heat conduction.
     rule : {"consistent", "hotter"}
         ``consistent``: −½ Σ k g n α Δv over the whole family, the half sum that a homogeneous
         gradient makes exact. ``hotter``: Eq. 170 over the hotter neighbours only, with the sign
@@ -231,6 +238,29 @@ def flux(solution: State, rule: Literal["consistent", "hotter"] = "consistent") 
     _need(solution, HEAT, "flux")
     if rule not in ("consistent", "hotter"):
         raise ValueError(f"unknown flux rule {rule!r}; known: consistent, hotter")
+    return _flow(solution, rule)
+
+
+def current_density(solution: State) -> Array:
+    """Current density j at the particles, shape (N, 2), A/m²: `flux` with φ for T.
+
+    −½ Σ k g n α Δv over the whole family, which a homogeneous field makes exact.
+    """
+    _need(solution, ELECTRICITY, "a current density")
+    return _flow(solution, "consistent")
+
+
+def joule_heat(solution: State) -> Array:
+    """Heat that the current makes, j·E, shape (N,), W/m³.
+
+    A pair gives off k g² α Δv² (its current times its voltage), twice its share of the
+    macro-potential of Eq. 115.
+    """
+    _need(solution, ELECTRICITY, "Joule heat")
+    return 2.0 * strain_energy_density(solution)
+
+
+def _flow(solution: State, rule: str) -> Array:
     body = solution.discretisation
     result = np.zeros((2, body.lattice.count))
     for pair in _pairs(solution):
@@ -323,8 +353,13 @@ def _fluxes(solution: State) -> dict[str, Array]:
     return {"flux": flux(solution)}
 
 
+def _currents(solution: State) -> dict[str, Array]:
+    return {"current_density": current_density(solution)}
+
+
 #: Recovered fields of each physics.
 _RECOVERED: dict[str, Callable[[State], dict[str, Array]]] = {
     ELASTICITY.name: _stresses,
     HEAT.name: _fluxes,
+    ELECTRICITY.name: _currents,
 }

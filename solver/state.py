@@ -19,7 +19,7 @@ class State:
     ----------
     discretisation : Discretisation
     unknowns : ndarray, shape (components, N)
-        u1, u2 and θ Δx, or T; NaN at parts that were set aside.
+        u1, u2 and θ Δx, or T, or φ; NaN at parts that were set aside.
     """
 
     discretisation: Discretisation
@@ -96,6 +96,11 @@ class State:
         return self._field("temperature")
 
     @property
+    def potential(self) -> Array:
+        """φ, shape (N,), V."""
+        return self._field("potential")
+
+    @property
     def surface_points(self) -> Array:
         """Nodes of the surface at which bonds end, shape (s, 2), m; none where no bond does."""
         surface = self.discretisation.operator.ended_stiffness
@@ -117,3 +122,8 @@ class State:
     def surface_temperature(self) -> Array:
         """T at the surface's nodes, shape (s,), K."""
         return self._at_surface("temperature")
+
+    @property
+    def surface_potential(self) -> Array:
+        """φ at the surface's nodes, shape (s,), V."""
+        return self._at_surface("potential")

@@ -123,9 +123,26 @@ class Conductivity(Table):
     """A conductor."""
 
     kind: Literal["conductivity"]
-    tensor: Matrix2 = Field(description="Conductivity, W/(m K) or S/m")
+    tensor: Matrix2 = Field(description="Conductivity, W/(m K)")
     heat_capacity: Positive | None = Field(default=None, description="ρ c, J/(m³ K)")
     angle_degrees: Number = Field(default=0.0, description="Turn anticlockwise")
+
+
+class Electric(Table):
+    """An electrical conductor by its tensor or its principal resistivities."""
+
+    kind: Literal["electric"]
+    tensor: Matrix2 | None = Field(default=None, description="Conductivity, S/m")
+    resistivities: Point | None = Field(
+        default=None, description="Along x and y before it is turned, Ω m"
+    )
+    angle_degrees: Number = Field(default=0.0, description="Turn anticlockwise")
+
+    @model_validator(mode="after")
+    def _one(self) -> Electric:
+        if (self.tensor is None) == (self.resistivities is None):
+            raise wrong("tensor", "needs either tensor or resistivities")
+        return self
 
 
 class Elastic(_Turned):
@@ -170,7 +187,9 @@ class Orthotropic(_Turned):
         return self
 
 
-Material = Annotated[Conductivity | Elastic | Isotropic | Orthotropic, Field(discriminator="kind")]
+Material = Annotated[
+    Conductivity | Electric | Elastic | Isotropic | Orthotropic, Field(discriminator="kind")
+]
 
 
 # ---- what holds it and acts on it -------------------------------------------------------
@@ -185,12 +204,13 @@ class Support(Table):
     u1: Scalar | None = Field(default=None, description="m")
     u2: Scalar | None = Field(default=None, description="m")
     rotation: Scalar | None = Field(default=None, description="rad")
-    temperature: Scalar | None = Field(default=None, description="K or V")
+    temperature: Scalar | None = Field(default=None, description="K")
+    potential: Scalar | None = Field(default=None, description="V")
 
     @property
     def values(self) -> dict[str, Any]:
         """What is prescribed."""
-        names = ("displacement", "u1", "u2", "rotation", "temperature")
+        names = ("displacement", "u1", "u2", "rotation", "temperature", "potential")
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
     @model_validator(mode="after")
@@ -199,7 +219,8 @@ class Support(Table):
             raise wrong("where", "needs either layer_cells or where")
         if not self.values:
             raise wrong(
-                "", "prescribes nothing: give displacement, u1, u2, rotation or temperature"
+                "",
+                "prescribes nothing: give displacement, u1, u2, rotation, temperature or potential",
             )
         for key in ("u1", "u2"):
             if "displacement" in self.values and key in self.values:
@@ -223,12 +244,36 @@ class Couple(Table):
     where: Condition | None = None
 
 
+class Temperature(Table):
+    """A change of temperature that strains the body."""
+
+    kind: Literal["temperature"]
+    value: Scalar = Field(description="K")
+    expansion: Matrix2 = Field(description="In the plane, 1/K; in plane strain the effective one")
+
+
 class Source(Table):
-    """A source of heat or current."""
+    """A source of heat."""
 
     kind: Literal["source"]
     value: Scalar = Field(description="W/m³")
     where: Condition | None = None
+
+
+class Current(Table):
+    """A current fed into the body."""
+
+    kind: Literal["current"]
+    value: Scalar = Field(description="A/m³")
+    where: Condition | None = None
+
+
+class LeadCurrent(Table):
+    """A lead that feeds in a current evenly."""
+
+    kind: Literal["lead"]
+    value: Number = Field(description="A per m of thickness")
+    where: Condition
 
 
 class Traction(Table):
@@ -258,12 +303,13 @@ class Flux(Table):
     """What a flux carries into the body through its edges."""
 
     kind: Literal["flux"]
-    value: Vector = Field(description="W/m²")
+    value: Vector = Field(description="W/m² or A/m²")
     where: Condition | None = None
 
 
 Load = Annotated[
-    BodyForce | Couple | Source | Traction | Stress | Flux, Field(discriminator="kind")
+    BodyForce | Couple | Temperature | Source | Current | LeadCurrent | Traction | Stress | Flux,
+    Field(discriminator="kind"),
 ]
 
 

@@ -255,10 +255,15 @@ def _region(table: Any) -> Region:
 
 
 def _material(table: Any) -> Any:
-    from solver import ConductivityTensor, ElasticTensor
+    from solver import ConductivityTensor, ElasticTensor, ElectricConductivityTensor
 
     if table.kind == "conductivity":
         material: Any = ConductivityTensor(table.tensor)
+    elif table.kind == "electric":
+        if table.tensor is not None:
+            material = ElectricConductivityTensor(table.tensor)
+        else:
+            material = ElectricConductivityTensor.of_resistivities(*table.resistivities)
     elif table.kind == "elastic":
         material = ElasticTensor(table.voigt)
     else:
@@ -279,10 +284,12 @@ def _support(table: model.Support) -> Support:
 
 
 def _load(table: Any) -> Load:
-    from solver import Load
+    from solver import ExpansionTensor, Load
 
     if table.kind == "traction":
         return Load.traction(table.value, tuple(table.start), tuple(table.end))
+    if table.kind == "temperature":
+        return Load.temperature(table.value, ExpansionTensor(table.expansion))
     load: Load = getattr(Load, table.kind)(table.value, where=table.where)
     return load
 
@@ -353,6 +360,9 @@ def _try_on_lattice(file: SceneFile, scene: Scene, source: Source) -> None:
         if load.density is not None:
             with source.at("load", i, "value"):
                 load.density(lattice, scene.surface == "extrapolated")
+        if load.strain is not None:
+            with source.at("load", i, "value"):
+                load.strain(lattice.places, False)
         if load.edge is not None:
             with source.at("load", i):
                 edge_loads(replace(scene, loads=[load]), lattice)

@@ -62,6 +62,11 @@ class Growth(Result):
         max_iterations: int,
         monitors: Mapping[str, Callable[[Growth], float]],
     ) -> None:
+        if any(load.strain is not None for load in scene.loads):
+            raise SceneError(
+                "temperatures (Load.temperature) are known to statics only: bonds do not break "
+                "under them yet"
+            )
         start = scene.discretise(sharp_tips=False, constrained=True)
         self.scene, self.programme, self.reason = scene, programme, ""
         self.bonds = Breakable(start, toughness, no_fail, tension_only, criterion)

@@ -2,12 +2,14 @@
 
 from .admission import calibrated, remedy, require_admissible
 from .calibration import Calibration, calibrate, representable, representable_by_directions
+from .expansion import ExpansionTensor
 from .family import AreaRule, Family
 from .influence import CONSTANT, Influence
 from .laws import AngularLaw, Cosine, Fourfold, TwoHarmonic, UniformShear
 from .moduli import (
     ConductiveModuli,
     ElasticModuli,
+    ElectricModuli,
     Moduli,
     bond_weights,
     effective_tensor,
@@ -15,7 +17,14 @@ from .moduli import (
 )
 from .stability import Stability, assess
 from .symbol import acoustic_tensor, brillouin_zone, condensed_symbol, margins
-from .tensors import ConductivityTensor, ElasticTensor, Material, Plane, stress_rotation
+from .tensors import (
+    ConductivityTensor,
+    ElasticTensor,
+    ElectricConductivityTensor,
+    Material,
+    Plane,
+    stress_rotation,
+)
 
 __all__ = [
     "CONSTANT",
@@ -27,6 +36,9 @@ __all__ = [
     "Cosine",
     "ElasticModuli",
     "ElasticTensor",
+    "ElectricConductivityTensor",
+    "ElectricModuli",
+    "ExpansionTensor",
     "Family",
     "Fourfold",
     "Influence",

@@ -35,6 +35,7 @@ from .moduli import (
     PAIRS3,
     ConductiveModuli,
     ElasticModuli,
+    ElectricModuli,
     Moduli,
     bond_weights,
     conductive_moments,
@@ -42,7 +43,7 @@ from .moduli import (
     stretch_rows,
 )
 from .positive import closest, feasible
-from .tensors import ConductivityTensor, ElasticTensor, Material
+from .tensors import ConductivityTensor, ElasticTensor, ElectricConductivityTensor, Material
 
 Calibration = Literal["continuum", "lattice", "positive"]
 
@@ -113,6 +114,17 @@ def _(
     material: ConductivityTensor, family: Family, calibration: Calibration, law: AngularLaw | None
 ) -> Moduli:
     return _conductive(family, material, calibration, Cosine() if law is None else law)
+
+
+@_calibrated.register
+def _(
+    material: ElectricConductivityTensor,
+    family: Family,
+    calibration: Calibration,
+    law: AngularLaw | None,
+) -> Moduli:
+    heat = _conductive(family, material, calibration, Cosine() if law is None else law)
+    return ElectricModuli(heat.conductivity)
 
 
 def _solve(system: Array, target: Array, what: str) -> Array:

@@ -18,7 +18,7 @@ from ..arrays import Array
 from .family import Family
 from .physics import Physics
 from .strains import elongations, end_rows, homogeneous_shear, homogeneous_stretch
-from .tensors import ConductivityTensor, ElasticTensor, Material
+from .tensors import ConductivityTensor, ElasticTensor, ElectricConductivityTensor, Material
 
 #: Products of pairs of entries in the order 11, 22, 12, 66, 16, 26 and 11, 22, 12.
 PAIRS3 = ([0, 1, 0, 2, 0, 1], [0, 1, 1, 2, 2, 2])
@@ -169,7 +169,13 @@ class ConductiveModuli(Moduli):
         return along
 
     def absolute(self) -> ConductiveModuli:
-        return ConductiveModuli(np.abs(self.conductivity))
+        return type(self)(np.abs(self.conductivity))
+
+
+class ElectricModuli(ConductiveModuli):
+    """The same of current: k of every bond, shape (n,), S/m per m² and unit thickness."""
+
+    tensor: ClassVar[type[Material]] = ElectricConductivityTensor
 
 
 def pair_length(family: Family, physics: Physics) -> Array:

@@ -89,7 +89,7 @@ ELASTICITY = Physics(
     turning=(False, False, True),
     fields={"displacement": (0, 1), "rotation": (2,)},
     supports={"displacement": (0, 1), "u1": (0,), "u2": (1,), "rotation": (2,)},
-    loads={"force": (0, 1), "traction": (0, 1), "couple": (2,)},
+    loads={"force": (0, 1), "traction": (0, 1), "couple": (2,), "temperature": (0, 1, 2)},
     motions=_rigid,
     motion_names=("translation along 1", "translation along 2", "rotation"),
     unheld="a rigid motion of {place} is left free ({motions}): statics has no unique solution",
@@ -114,4 +114,18 @@ HEAT = Physics(
     motion_names=("level",),
     unheld="no temperature is prescribed on {place}: its level is undetermined",
     storage="heat_capacity",
+)
+
+ELECTRICITY = Physics(
+    name="electrical conduction",
+    adjective="an electrically conductive",
+    unknowns=("φ",),
+    turning=(False,),
+    fields={"potential": (0,)},
+    supports={"potential": (0,)},
+    loads={"current": (0,), "source": (0,), "inflow": (0,)},
+    motions=_level,
+    motion_names=("level",),
+    unheld="{place} is a floating conductor: no potential is prescribed on it, its level is "
+    "undetermined",
 )

@@ -6,13 +6,13 @@ A tensor is validated once, here, so that nothing downstream has to doubt it.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
-from .physics import ELASTICITY, HEAT, Physics
+from .physics import ELASTICITY, ELECTRICITY, HEAT, Physics
 
 Plane = Literal["stress", "strain"]
 
@@ -177,12 +177,12 @@ def stress_rotation(psi: float) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class ConductivityTensor:
-    """Plane thermal or electrical conductivity (Eqs. 136–137), q = −D ∇T.
+    """Plane thermal conductivity (Eqs. 136–137), q = −D ∇T.
 
     Parameters
     ----------
     matrix : array_like, shape (2, 2)
-        Symmetric positive definite, W/(m K) or S/m.
+        Symmetric positive definite, W/(m K).
 
     Raises
     ------
@@ -198,12 +198,12 @@ class ConductivityTensor:
         object.__setattr__(self, "matrix", _validated(matrix, 2, "the conductivity tensor"))
 
     @classmethod
-    def isotropic(cls, k: float) -> ConductivityTensor:
+    def isotropic(cls, k: float) -> Self:
         """Isotropic conductor of conductivity `k`."""
         return cls(np.diag([k, k]))
 
     @classmethod
-    def orthotropic(cls, k1: float, k2: float, angle: float = 0.0) -> ConductivityTensor:
+    def orthotropic(cls, k1: float, k2: float, angle: float = 0.0) -> Self:
         """Principal conductivities `k1`, `k2`, the first along `angle` (rad)."""
         return cls(np.diag([k1, k2])).rotated(angle)
 
@@ -212,11 +212,11 @@ class ConductivityTensor:
         """Resistivity D⁻¹, shape (2, 2)."""
         return np.asarray(np.linalg.inv(self.matrix), dtype=np.float64)
 
-    def rotated(self, angle: float) -> ConductivityTensor:
+    def rotated(self, angle: float) -> Self:
         """The same conductor turned anticlockwise by `angle` (rad)."""
         c, s = np.cos(angle), np.sin(angle)
         q = np.array([[c, -s], [s, c]])
-        return ConductivityTensor(q @ self.matrix @ q.T)
+        return type(self)(q @ self.matrix @ q.T)
 
     def principal(self) -> tuple[float, float, float]:
         """Largest and smallest conductivity and the angle (rad) of the first (Eqs. 160–162).
@@ -228,6 +228,36 @@ class ConductivityTensor:
         angle = 0.5 * float(np.arctan2(2 * d[0, 1], d[0, 0] - d[1, 1]))
         low, high = np.linalg.eigvalsh(d)
         return float(high), float(low), angle
+
+
+class ElectricConductivityTensor(ConductivityTensor):
+    """Plane electrical conductivity (Sect. 4.3.2), j = −σ ∇φ; the rest is as in heat conduction.
+
+    Parameters
+    ----------
+    matrix : array_like, shape (2, 2)
+        Symmetric positive definite, S/m.
+
+    Examples
+    --------
+    >>> ElectricConductivityTensor.of_resistivities(100.0, 500.0).matrix.diagonal()
+    array([0.01 , 0.002])
+    """
+
+    physics: ClassVar[Physics] = ELECTRICITY
+
+    @classmethod
+    def of_resistivities(cls, rho1: float, rho2: float, angle: float = 0.0) -> Self:
+        """Principal resistivities `rho1`, `rho2`, Ω m, the first along `angle` (rad).
+
+        Raises
+        ------
+        ValueError
+            If one is not positive and finite.
+        """
+        if not all(np.isfinite(r) and r > 0.0 for r in (rho1, rho2)):
+            raise ValueError(f"resistivities must be positive and finite, not {rho1} and {rho2}")
+        return cls.orthotropic(1.0 / rho1, 1.0 / rho2, angle)
 
 
 Material = ElasticTensor | ConductivityTensor

@@ -5,8 +5,8 @@ Energies and why they are what they are: `solver.bonds.ended`; the membrane alon
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
@@ -66,12 +66,12 @@ class SurfaceStiffness:
         number = np.full(len(ended.outline.nodes), -1)
         number[self.nodes] = np.arange(count[1])
         length = ended.length
-        rule = _Strains(family, moduli, ended.offset, length)
+        rule = BondStrains(family, moduli, ended.offset, length)
         whole = family.length[ended.offset]
         particle = rule.rows(-1.0, 0.5 * whole)
-        strain_p = _place(particle, [(here, np.ones_like(length))], count[0])
+        strain_p = place(particle, [(here, np.ones_like(length))], count[0])
         surface = rule.rows(1.0, length - 0.5 * whole)
-        strain_s = _place(surface, _between(number[ends], ended.position), count[1])
+        strain_s = place(surface, between(number[ends], ended.position), count[1])
         self._ends = particle, surface
         scaled = sparse.diags_array(rule.weight.ravel()) @ strain_s
         #: Diagonal entries of the particles in the operator's order, shape (entries, p).
@@ -90,24 +90,21 @@ class SurfaceStiffness:
         #: K_ps.
         self.transposed: sparse.csr_array = sparse.csr_array(self.coupling.T)
         matrix = sparse.csc_array(strain_s.T @ scaled)
-        chords = ended.chords
-        if chords is not None and len(chords.offset):
-            rule = _Strains(family, moduli, chords.offset, chords.length)
-            strain = sparse.csr_array((rule.weight.size, components * count[1]))
-            for end, sign in enumerate((-1.0, 1.0)):
-                ends = number[ended.outline.edges[chords.edge[:, end]]]
-                rows = rule.rows(sign, chords.arm[:, end])
-                strain = strain + _place(rows, _between(ends, chords.position[:, end]), count[1])
-            scaled = sparse.diags_array(rule.weight.ravel()) @ strain
-            matrix = matrix + sparse.csc_array(strain.T @ scaled)
-        skin = self._skin(family, moduli, number)
+        if (chords := chord_strains(ended, family, moduli, number)) is not None:
+            weight, _, strain = chords
+            matrix = matrix + sparse.csc_array(strain.T @ sparse.diags_array(weight) @ strain)
+        skin = membrane(ended, family, moduli, number)
         #: K_ss.
-        self.matrix: sparse.csc_array = matrix + skin(False)
+        self.matrix: sparse.csc_array = matrix + _stiffness_of_skin(skin, matrix.shape)
+        #: Whether the membrane only stiffens.
+        self.stiffened = False
         self._hold()
         self._lu = self._factorise(number[ended.outline.edges])
         if moduli.non_negative and self._lu.U.diagonal().min(initial=1.0) < 0.0:
             # Where few bonds hold a node, what is too much of the lattice must not soften it.
-            self.matrix = matrix + skin(True)
+            self.stiffened = True
+            skin = None if skin is None else skin.stiffening()
+            self.matrix = matrix + _stiffness_of_skin(skin, matrix.shape)
             self._hold()
             self._lu = self._factorise(number[ended.outline.edges])
 
@@ -128,33 +125,6 @@ class SurfaceStiffness:
             identity = sparse.diags_array(self.held * self._scale)
             self._free_matrix = sparse.csc_array(free @ self.matrix @ free + identity)
             self._free_coupling = sparse.csr_array(free @ self.coupling)
-
-    def _skin(
-        self, family: Family, moduli: Moduli, number: Indices
-    ) -> Callable[[bool], sparse.csc_array]:
-        """The membrane that makes up for strips of the lattice along the edge (`skin`).
-
-        A function of whether only what stiffens is wanted.
-        """
-        outline, c, count = self.ended.outline, self.components, len(self.nodes)
-        ends = number[outline.edges]
-        edges = np.nonzero((outline.face == 0) & (ends >= 0).all(axis=1))[0]
-        if not len(edges):
-            return lambda _: sparse.csc_array((c * count, c * count))
-        stiffness = thickness(outline, family, moduli, edges) / family.cell_area
-        length = outline.length[edges]
-        along = (outline.nodes[outline.edges[edges, 1]] - outline.nodes[outline.edges[edges, 0]]).T
-        along = along / length if c > 1 else np.ones((1, len(edges)))
-        rows = np.zeros((1, c, len(edges)))
-        rows[0, : len(along)] = along / length
-        one = np.ones(len(edges))
-        strain = _place(rows, [(ends[edges, 1], one), (ends[edges, 0], -one)], count)
-
-        def membrane(stiffening: bool) -> sparse.csc_array:
-            kept = np.maximum(stiffness, 0.0) if stiffening else stiffness
-            return sparse.csc_array(strain.T @ sparse.diags_array(kept * length) @ strain)
-
-        return membrane
 
     def _factorise(self, edges: Indices) -> SuperLU:
         """Factors of K_ss. `edges` joins all nodes of the outline, −1 for those without bonds."""
@@ -310,7 +280,86 @@ class SurfaceStiffness:
         return int(size + 12 * self._lu.nnz + self.own.nbytes + self.ended.nbytes)
 
 
-class _Strains:
+class Membrane(NamedTuple):
+    """The membrane that makes up for strips of the lattice along the edge (`skin`).
+
+    Attributes
+    ----------
+    edges : ndarray of int, shape (e,)
+        Of the outline.
+    along : ndarray, shape (2 or 1, e)
+        Their directions.
+    weight : ndarray, shape (e,)
+        Twice the energy for a strain of one along each edge.
+    strain : sparse, shape (e, components·s)
+        That strain of the nodes' values.
+    """
+
+    edges: Indices
+    along: Array
+    weight: Array
+    strain: sparse.csr_array
+
+    def stiffening(self) -> Membrane:
+        """Only what stiffens of it."""
+        return self._replace(weight=np.maximum(self.weight, 0.0))
+
+
+def membrane(ended: EndedBonds, family: Family, moduli: Moduli, number: Indices) -> Membrane | None:
+    """The membrane of a body, None without edges that have one.
+
+    Parameters
+    ----------
+    number : ndarray of int, shape (nodes of the outline,)
+        Of each node among those at which bonds end, −1 for others.
+    """
+    outline, c = ended.outline, moduli.components
+    ends = number[outline.edges]
+    edges = np.nonzero((outline.face == 0) & (ends >= 0).all(axis=1))[0]
+    if not len(edges):
+        return None
+    stiffness = thickness(outline, family, moduli, edges) / family.cell_area
+    length = outline.length[edges]
+    along = (outline.nodes[outline.edges[edges, 1]] - outline.nodes[outline.edges[edges, 0]]).T
+    along = along / length if c > 1 else np.ones((1, len(edges)))
+    rows = np.zeros((1, c, len(edges)))
+    rows[0, : len(along)] = along / length
+    one = np.ones(len(edges))
+    count = int((number >= 0).sum())
+    strain = place(rows, [(ends[edges, 1], one), (ends[edges, 0], -one)], count)
+    return Membrane(edges, along, stiffness * length, strain)
+
+
+def _stiffness_of_skin(skin: Membrane | None, shape: tuple[int, int]) -> sparse.csc_array:
+    if skin is None:
+        return sparse.csc_array(shape)
+    return sparse.csc_array(skin.strain.T @ sparse.diags_array(skin.weight) @ skin.strain)
+
+
+def chord_strains(
+    ended: EndedBonds, family: Family, moduli: Moduli, number: Indices
+) -> tuple[Array, Array, sparse.csr_array] | None:
+    """Strains of the chords that corners cut out of bonds, None if there are no chords.
+
+    Returns
+    -------
+    tuple of ndarray, shapes (strains·k,) and (2, k), and sparse, shape (strains·k, components·s)
+        Twice the energy for a strain of one, normals, and the strains of the nodes' values.
+    """
+    chords = ended.chords
+    if chords is None or not len(chords.offset):
+        return None
+    rule = BondStrains(family, moduli, chords.offset, chords.length)
+    count = int((number >= 0).sum())
+    strain = sparse.csr_array((rule.weight.size, moduli.components * count))
+    for end, sign in enumerate((-1.0, 1.0)):
+        ends = number[ended.outline.edges[chords.edge[:, end]]]
+        rows = rule.rows(sign, chords.arm[:, end])
+        strain = strain + place(rows, between(ends, chords.position[:, end]), count)
+    return rule.weight.ravel(), rule.normal, strain
+
+
+class BondStrains:
     """The strains of bonds of given offsets and lengths, as rows of values at their ends."""
 
     def __init__(self, family: Family, moduli: Moduli, offset: Indices, length: Array) -> None:
@@ -340,12 +389,12 @@ class _Strains:
         return self.moduli.end_rows(self.scales, self.normal, end, arm) / self.length
 
 
-def _between(nodes: Indices, position: Array) -> list[tuple[Indices, Array]]:
+def between(nodes: Indices, position: Array) -> list[tuple[Indices, Array]]:
     """Nodes (k, 2) and weights of points along edges."""
     return [(nodes[:, 0], 1 - position), (nodes[:, 1], position)]
 
 
-def _place(rows: Array, ends: list[tuple[Indices, Array]], count: int) -> sparse.csr_array:
+def place(rows: Array, ends: list[tuple[Indices, Array]], count: int) -> sparse.csr_array:
     """Rows (strains, components, k) of values that are weighted means over `ends`."""
     strains, components, size = rows.shape
     row = np.arange(strains * size).reshape(strains, size)

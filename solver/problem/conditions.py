@@ -14,10 +14,13 @@ from numpy.typing import ArrayLike
 from ..arrays import Array, Mask
 from ..errors import SceneError
 from ..geometry import Lattice, Outline, Point, Quadrature, Region, Where, select, volumes
+from ..material import ExpansionTensor
 from ..material.physics import Physics
 
 # Points of a line load in every cell.
 _PER_CELL = 4
+# What of a support is no value.
+_NO_VALUES = {"select", "rigid", "centre", "tied", "nodes", "electrode"}
 
 Value = float | ArrayLike | Callable[..., Any]
 
@@ -99,7 +102,8 @@ class Support:
     rotation : value, rad, optional
         Prescribe it wherever it is known: a layer with free rotations gets them wrong, because
         its families are cut by the body's edge.
-    temperature : value, K (or V), optional
+    temperature : value, K, optional
+    potential : value, V, optional
     rigid : bool
         The particles move as a rigid body (`pin`); what is given is the motion of its centre.
     centre : point, optional
@@ -109,6 +113,8 @@ class Support:
     nodes : callable, optional
         Outline, its shift from the user's coordinates → mask over its nodes, of a support of the
         edge.
+    electrode : Region or callable, optional
+        Of a lead (`lead`), which must lie in the body and touch no other.
     """
 
     select: Callable[[Lattice], Mask]
@@ -117,10 +123,12 @@ class Support:
     u2: Value | None = None
     rotation: Value | None = None
     temperature: Value | None = None
+    potential: Value | None = None
     rigid: bool = False
     centre: Point | None = None
     tied: tuple[str, ...] | None = None
     nodes: Callable[[Outline, Point], Mask] | None = None
+    electrode: Where | None = None
 
     def __post_init__(self) -> None:
         if self.displacement is not None and (self.u1 is not None or self.u2 is not None):
@@ -129,14 +137,14 @@ class Support:
             return
         if not (self.given - {"rotation"}) and self.rotation is None:
             raise SceneError(
-                "a support prescribes nothing: give displacement, u1, u2, rotation or temperature"
+                "a support prescribes nothing: give displacement, u1, u2, rotation, temperature or "
+                "potential"
             )
 
     @property
     def given(self) -> set[str]:
         """Names of the values that are given."""
-        how = {"select", "rigid", "centre", "tied", "nodes"}
-        names = {item.name for item in fields(self)} - how
+        names = {item.name for item in fields(self)} - _NO_VALUES
         return {name for name in names if getattr(self, name) is not None}
 
     @property
@@ -183,10 +191,10 @@ class Support:
         ----------
         where : Region or callable
         *unknowns : str
-            Names as in a support: "u1", "u2", "rotation", "temperature".
+            Names as in a support: "u1", "u2", "rotation", "temperature", "potential".
         """
         if not unknowns:
-            raise SceneError("name what is equal: u1, u2, rotation or temperature")
+            raise SceneError("name what is equal: u1, u2, rotation, temperature or potential")
         return cls(lambda lattice: select(lattice, where), tied=unknowns)
 
     @classmethod
@@ -230,6 +238,21 @@ class Support:
 
         return cls(lambda lattice: np.zeros(lattice.count, dtype=bool), nodes=nodes, **values)
 
+    @classmethod
+    def lead(cls, where: Where, potential: Value | None = None) -> Support:
+        """A lead: a small region of the body on metal, at one potential.
+
+        Parameters
+        ----------
+        where : Region or callable
+        potential : value, V, optional
+            Without it the lead floats at the potential that the current of a `Load.lead` on the
+            same region drives it to.
+        """
+        if potential is None:
+            return replace(cls.equal(where, "potential"), electrode=where)
+        return replace(cls.where(where, potential=potential), electrode=where)
+
     def columns(self, physics: Physics) -> list[tuple[int, Value, int, int]]:
         """(unknown, value, component of it, components it has) of everything prescribed.
 
@@ -267,9 +290,9 @@ class Load:
 
     Attributes
     ----------
-    kind : {"force", "couple", "source", "traction", "inflow"}
-        Body force (N/m³, two components), body couple (N m/m³), heat source (W/m³); on edges
-        traction (Pa, two components) and inflow of heat (W/m²).
+    kind : {"force", "couple", "temperature", "source", "current", "traction", "inflow"}
+        Body force (N/m³, two components), body couple (N m/m³), source of heat (W/m³) or current
+        (A/m³); on edges traction (Pa, two components) and inflow of heat (W/m²) or current (A/m²).
     density : callable, optional
         Of a load in the body: lattice, whether its edge is where it is drawn → (mask, what acts
         on each particle over its cell, shape (selected, components)).
@@ -279,12 +302,19 @@ class Load:
         Of a concentrated load: spacing → (places, what acts at each, (k, components)).
     instant : callable, optional
         Of a load that depends on time: time (s) → the load then.
+    electrode : Region or callable, optional
+        Of a lead (`lead`), which must lie in the body and touch no other.
+    strain : callable, optional
+        Of a temperature: places, whether they are the surface's nodes → the strain (ε11, ε22,
+        2 ε12) that it would cause without stress, (n, 3).
     """
 
     kind: str
     density: Callable[[Lattice, bool], tuple[Mask, Array]] | None = None
     edge: Callable[[Outline, Point], Quadrature] | None = None
     points: Callable[[float], tuple[Array, Array]] | None = None
+    electrode: Where | None = None
+    strain: Callable[[Array, bool], Array] | None = None
     instant: Callable[[float], Load] | None = None
 
     @property
@@ -357,13 +387,78 @@ class Load:
         return cls._body("couple", couple, 1, where)
 
     @classmethod
+    def temperature(
+        cls, change: Value, expansion: ExpansionTensor, at_surface: Value | None = None
+    ) -> Load:
+        """A change of temperature, K, that strains the body by ε = A T without stress.
+
+        The stress of a solution, and its energy, are those of what the displacement strains it
+        beyond that. Several add up.
+
+        Parameters
+        ----------
+        change : value
+        expansion : ExpansionTensor
+            In plane strain the plane's effective one.
+        at_surface : value, optional
+            The change at the surface's nodes where `change` is one value a particle and bonds end
+            at the surface (``extrapolated``): `State.surface_temperature` of the conduction
+            problem on the same body.
+        """
+        if not isinstance(expansion, ExpansionTensor):
+            raise SceneError(
+                f"a temperature needs the solid's ExpansionTensor, not {type(expansion).__name__}"
+            )
+
+        def strain(places: Array, surface: bool) -> Array:
+            value = change if not surface or at_surface is None else at_surface
+            if surface and not callable(value) and np.ndim(value) and at_surface is None:
+                raise SceneError(
+                    "a temperature of one value a particle says nothing of the surface, where "
+                    "bonds end: give at_surface, or a function of (x, y)"
+                )
+            return evaluate(value, places, 1, "a temperature") * expansion.voigt
+
+        if in_time(change) or in_time(at_surface):
+            raise SceneError("a temperature that strains a body is known to statics only: f(x, y)")
+        return cls("temperature", strain=strain)
+
+    @classmethod
     def source(cls, source: Value, where: Where | None = None) -> Load:
-        """Heat (or current) source ω, W/m³."""
+        """Heat source ω, W/m³ (in electrical conduction `current` says the same)."""
         return cls._body("source", source, 1, where)
 
     @classmethod
+    def current(cls, density: Value, where: Where | None = None) -> Load:
+        """Current fed into the body, A/m³."""
+        return cls._body("current", density, 1, where)
+
+    @classmethod
+    def lead(cls, current: float, where: Where) -> Load:
+        """A lead that feeds in a current, A per m of thickness, evenly over a small region.
+
+        What enters adds up to `current` whether or not the region is a whole number of cells.
+        With `Support.lead` on the same region it spreads as metal lets it.
+
+        Raises
+        ------
+        SceneError
+            If the current is not a finite number.
+        """
+        if not np.isfinite(current):
+            raise SceneError(f"a lead's current must be a finite number, not {current}")
+        even = cls._body("current", 1.0, 1, where).density
+        assert even is not None
+
+        def density(lattice: Lattice, true_edges: bool) -> tuple[Mask, Array]:
+            mask, volume = even(lattice, true_edges)
+            return mask, volume * (current / (volume.sum() * lattice.spacing**2))
+
+        return cls("current", density, electrode=where)
+
+    @classmethod
     def point(cls, force: ArrayLike, at: Point) -> Load:
-        """A force (f1, f2), N per m of thickness, or a source of heat, W per m, at a point.
+        """A force (f1, f2), N per m of thickness, or a source, W or A per m, at a point.
 
         On an edge of the body (``extrapolated``) its nodes carry it, elsewhere the particles
         around it, resultant and moment being exact (`solver.geometry.spread`). What it does at
@@ -437,7 +532,7 @@ class Load:
 
     @classmethod
     def flux(cls, flux: Value, where: Where | None = None) -> Load:
-        """What a flux (q1, q2), W/m², carries into the body through its edges: −q·n."""
+        """What a flux (q1, q2), W/m² (or A/m²), carries into the body through its edges: −q·n."""
 
         def edge(flux: Value, outline: Outline, shift: Point) -> Quadrature:
             rule = Quadrature.over(outline, where, shift)

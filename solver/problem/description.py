@@ -37,7 +37,7 @@ class Description:
     region : Region
     spacing : float
         Grid spacing Δx, m.
-    material : ElasticTensor or ConductivityTensor
+    material : ElasticTensor, ConductivityTensor or ElectricConductivityTensor
         Decides the physics.
     supports : sequence of Support
         Later ones win where they overlap.
@@ -100,8 +100,8 @@ class Description:
             raise SceneError(f"region must be a Region, not {type(self.region).__name__}")
         if not isinstance(self.material, Material):
             raise SceneError(
-                f"material must be an ElasticTensor or a ConductivityTensor, not "
-                f"{type(self.material).__name__}"
+                f"material must be an ElasticTensor, a ConductivityTensor or an "
+                f"ElectricConductivityTensor, not {type(self.material).__name__}"
             )
         listed: dict[str, type] = {"supports": Support, "loads": Load, "cracks": Crack}
         for name, kind in listed.items():

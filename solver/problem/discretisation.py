@@ -26,7 +26,8 @@ from ..geometry import (
 )
 from ..material import Family, Moduli, Stability, calibrated, require_admissible
 from ..operators import BondOperator
-from . import cautions, mechanisms
+from ..operators.eigenstrain import Eigenstrain
+from . import cautions, leads, mechanisms
 from . import constraints as constraints_of
 from .conditions import evaluate
 from .constraints import Constraints
@@ -54,6 +55,8 @@ class Discretisation:
         Wall time that building all this took.
     constraints : Constraints, optional
         Of rigid pins and tied unknowns; slaves are among the prescribed.
+    eigenstrain : Eigenstrain, optional
+        Of temperatures; the loads hold what it exerts.
     """
 
     scene: Description
@@ -69,6 +72,7 @@ class Discretisation:
     nodal_load: Array | None
     seconds: float
     constraints: Constraints | None = None
+    eigenstrain: Eigenstrain | None = None
 
     @classmethod
     def of(
@@ -86,7 +90,8 @@ class Discretisation:
         sharp_tips : bool
         constrained : bool
             Whether the caller knows rigid pins and tied unknowns. Slaves are among the
-            `prescribed`: who does not ask for `constraints` would take them for clamped.
+            `prescribed`: who does not ask for `constraints` would take them for clamped. Nor
+            do others know that temperatures strain bonds.
         free : bool
             Whether parts that no support holds are no fault: bodies may move in time.
 
@@ -104,9 +109,14 @@ class Discretisation:
                 "rigid pins and equal unknowns (Support.pin, Support.equal) are known to statics "
                 "and fracture only: prescribe displacements instead"
             )
+        if not constrained and any(load.strain is not None for load in scene.loads):
+            raise SceneError(
+                "temperatures that strain a body (Load.temperature) are known to statics only"
+            )
         lattice = Lattice(scene.region, scene.spacing, family.reach, scene.phase)
         cracks = _moved(scene.cracks, lattice)
         prescribed, values = _supports(scene, lattice, moduli)
+        leads.check(scene, lattice, prescribed)
         relating = [support for support in scene.supports if support.constrains]
         constraints = constraints_of.build(relating, lattice, moduli, prescribed, values)
         load = _loads(scene, lattice, moduli)
@@ -151,6 +161,7 @@ class Discretisation:
                 "a load on an edge acts on a part that nothing holds: hold it, or leave it out of "
                 "the load (where=...)"
             )
+        eigenstrain = _eigenstrain(scene, lattice, operator, load, nodal_load)
         seconds = perf_counter() - begun
         return cls(
             scene,
@@ -166,6 +177,7 @@ class Discretisation:
             nodal_load,
             seconds,
             constraints,
+            eigenstrain,
         )
 
     @property
@@ -406,3 +418,31 @@ def _concentrate(
             point, particle, share = on_particles(near, cracks, places[inside])
             for unknown, values in zip(unknowns, force, strict=True):
                 np.add.at(load[unknown], particle, share * values[inside][point])
+
+
+def _eigenstrain(
+    scene: Description,
+    lattice: Lattice,
+    operator: BondOperator,
+    load: Array,
+    nodal_load: Array | None,
+) -> Eigenstrain | None:
+    """What temperatures strain; their forces are added to `load` and `nodal_load`."""
+    acting = [item.strain for item in scene.loads if item.strain is not None]
+    if not acting:
+        return None
+    surface = operator.ended_stiffness
+    particles = sum(strain(lattice.places, False).T for strain in acting)
+    nodes = None
+    if surface is not None:
+        at = surface.ended.outline.nodes + lattice.centred.shift
+        # Nodes at which no bond ends feel nothing: a value a node is one of those that do.
+        nodes = np.zeros((3, len(at)))
+        nodes[:, surface.nodes] = sum(strain(at[surface.nodes], True).T for strain in acting)
+    found = Eigenstrain(operator.bonds, operator.moduli, np.asarray(particles), nodes)
+    load += found.load()
+    if surface is not None and nodal_load is not None:
+        on_particles, on_nodes = found.surface_load(surface)
+        load += on_particles
+        nodal_load += on_nodes
+    return found

@@ -160,3 +160,56 @@ def test_fracture_tables_that_make_no_sense(tmp_path, table, line, message):
     at = SMALL.count("\n") + 1 + line
     with pytest.raises(SceneFileError, match=rf"scene\.toml:{at}: \[fracture\] .*{message}"):
         scene_file.request(path)
+
+
+PLATE = """
+[discretisation]
+spacing = 0.1
+m = 3
+[region]
+shape = "rectangle"
+width = 1.0
+height = 1.0
+"""
+
+
+def test_conductors_of_current_and_temperatures(tmp_path):
+    live = (
+        PLATE
+        + """
+    [material]
+    kind = "electric"
+    resistivities = [170, 540]
+    angle_degrees = 20
+    [[support]]
+    where = "x < -0.3"
+    potential = 0
+    [[load]]
+    kind = "lead"
+    where = "x > 0.3"
+    value = 2.0
+    """
+    )
+    hot = (
+        PLATE
+        + """
+    [material]
+    kind = "isotropic"
+    E = 1.0
+    nu = 0.2
+    [[support]]
+    layer_cells = 2.5
+    displacement = [0, 0]
+    [[load]]
+    kind = "temperature"
+    value = "3*x"
+    expansion = [[1e-3, 0], [0, 2e-3]]
+    """
+    )
+    (tmp_path / "live.toml").write_text(live)
+    (tmp_path / "hot.toml").write_text(hot)
+    assert scene_file.request(tmp_path / "live.toml").run().fields()["potential"].max() > 0
+    assert scene_file.request(tmp_path / "hot.toml").run().fields()["stress22"].std() > 1e-4
+    (tmp_path / "both.toml").write_text(live.replace("potential", "temperature"))
+    with pytest.raises(SceneFileError, match="no temperature to prescribe"):
+        scene_file.request(tmp_path / "both.toml")

@@ -5,12 +5,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from solver.material import ConductivityTensor, ElasticTensor, Family, calibrate
-from solver.material.physics import ELASTICITY, HEAT
+from solver.material import (
+    ConductivityTensor,
+    ElasticTensor,
+    ElectricConductivityTensor,
+    Family,
+    calibrate,
+)
+from solver.material.physics import ELASTICITY, ELECTRICITY, HEAT
 from solver.material.strains import elongations
 from tests.solver.bodies import exact
 
-ALL = (ELASTICITY, HEAT)
+ALL = (ELASTICITY, HEAT, ELECTRICITY)
 
 
 @pytest.mark.parametrize("physics", ALL, ids=lambda p: p.name)
@@ -41,7 +47,7 @@ def test_free_motions_strain_no_bond(seed):
     family = Family(2.5, 0.3)
     start = rng.normal(size=(family.size, 2))
     end = start + family.length[:, None] * family.normal
-    for physics, strains in ((ELASTICITY, ("s", "γ")), (HEAT, ("g",))):
+    for physics, strains in ((ELASTICITY, ("s", "γ")), (HEAT, ("g",)), (ELECTRICITY, ("g",))):
         motions = zip(physics.motions(start), physics.motions(end), strict=True)
         for name, (here, there) in zip(physics.motion_names, motions, strict=True):
             turn = 0.5 * family.length * (here[-1] + there[-1])
@@ -51,7 +57,11 @@ def test_free_motions_strain_no_bond(seed):
 
 @pytest.mark.parametrize(
     ("material", "physics"),
-    [(ElasticTensor.isotropic(1.0, 0.2), ELASTICITY), (ConductivityTensor.isotropic(1.0), HEAT)],
+    [
+        (ElasticTensor.isotropic(1.0, 0.2), ELASTICITY),
+        (ConductivityTensor.isotropic(1.0), HEAT),
+        (ElectricConductivityTensor.isotropic(1.0).rotated(0.3), ELECTRICITY),
+    ],
 )
 def test_tensors_and_moduli_name_their_physics(material, physics):
     moduli = calibrate(Family(3), material)

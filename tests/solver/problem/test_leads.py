@@ -1,0 +1,85 @@
+"""Leads: what they feed in adds up, and those that cannot be meant are refused."""
+
+import numpy as np
+import pytest
+
+from solver import (
+    ElasticTensor,
+    ElectricConductivityTensor,
+    Load,
+    MechanismError,
+    Scene,
+    SceneError,
+    Support,
+    disc,
+    recovery,
+    rectangle,
+)
+from solver.reactions import supply
+
+BONE = ElectricConductivityTensor.of_resistivities(170.0, 540.0, 0.4)
+BODY = rectangle(2.0, 1.0)
+EAST, WEST = rectangle(0.2, 0.2, (0.5, 0.0)), rectangle(0.2, 0.2, (-0.5, 0.0))
+GROUND = Support.lead(WEST, potential=0.0)
+
+
+def scene(loads=(), supports=(), **options):
+    return Scene(BODY, 0.05, BONE, supports, loads, m=3, **options)
+
+
+@pytest.mark.parametrize("surface", ["none", "volume", "extrapolated"])
+@pytest.mark.parametrize("where", [EAST, disc(0.13, (0.51, 0.03)), lambda x, y: x > 0.83])
+def test_what_a_lead_feeds_in_leaves_by_the_other(surface, where):
+    solution = scene([Load.lead(3.0, where)], [GROUND], surface=surface).solve(tolerance=1e-12)
+    assert supply(solution, WEST) == pytest.approx(-3.0, rel=1e-9)
+    assert abs(supply(solution, where)) < 1e-9
+
+
+def test_a_lead_of_metal_has_one_potential_and_makes_the_heat_that_it_is_fed():
+    loads, supports = [Load.lead(3.0, EAST)], [GROUND, Support.lead(EAST)]
+    solution = scene(loads, supports, surface="none").solve(tolerance=1e-12)
+    lead = EAST.contains(*solution.points.T)
+    at = solution.potential[lead]
+    assert np.ptp(at) < 1e-9 * at.mean()
+    heat = recovery.joule_heat(solution).sum() * 0.05**2
+    assert heat == pytest.approx(3.0 * at.mean(), rel=1e-8)
+    still = Support.layer(2.5, displacement=0.0, rotation=0.0)
+    elastic = Scene(BODY, 0.1, ElasticTensor.isotropic(1.0, 0.2), [still], m=2).solve()
+    with pytest.raises(SceneError, match="conducts nothing"):
+        supply(elastic, WEST)
+
+
+@pytest.mark.parametrize(
+    ("loads", "supports", "message"),
+    [
+        ([Load.lead(1.0, EAST), Load.lead(-1.0, WEST)], [], "floating conductor"),
+        ([], [Support.lead(EAST)], "floating conductor"),
+        ([Load.lead(1.0, rectangle(0.2, 0.2, (5.0, 0.0)))], [GROUND], "outside the body"),
+        ([Load.lead(1.0, rectangle(0.2, 0.2, (1.0, 0.0)))], [GROUND], "50% of the lead"),
+        ([], [GROUND, Support.lead(rectangle(0.2, 0.2, (-0.3, 0.0)), 1.0)], "touch"),
+        ([Load.lead(1.0, EAST), Load.lead(1.0, disc(0.1, (0.5, 0.2)))], [GROUND], "touch"),
+        ([Load.lead(1.0, EAST)], [GROUND, Support.lead(EAST, 0.0)], "would be lost"),
+        ([Load.lead(1.0, EAST)], [Support.layer(3.5, potential=0.0),
+                                  Support.where(EAST, potential=1.0)], "would be lost"),
+        ([], [Support.where(EAST, temperature=0.0)], "no temperature to prescribe"),
+        ([Load.body_force((0.0, 1.0))], [GROUND], "a force does not act on an electrically"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_meant_is_refused(loads, supports, message):
+    with pytest.raises((SceneError, MechanismError), match=message):
+        scene(loads, supports).solve()
+
+
+def test_a_lead_s_current_is_a_number():
+    with pytest.raises(SceneError, match="finite number"):
+        Load.lead(float("nan"), EAST)
+    with pytest.raises(ValueError, match="resistivities must be positive"):
+        ElectricConductivityTensor.of_resistivities(170.0, 0.0)
+
+
+def test_an_isolated_part_is_named():
+    """A slit that cuts the plate leaves the part with the lead floating."""
+    from solver import Crack
+
+    with pytest.raises(MechanismError, match=r"the part about .* is a floating conductor"):
+        scene([Load.lead(1.0, EAST)], [GROUND], cracks=[Crack((0.0, -0.6), (0.0, 0.6))]).solve()
