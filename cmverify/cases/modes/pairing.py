@@ -30,7 +30,7 @@ class Pairing:
     order : (count,) array of int
         Rank of the computed mode of each reference mode, from 0.
     aligned : (count, N, 2) array
-        Computed shapes, turned within multiple modes to meet the reference's; NaN nowhere.
+        Computed shapes, turned within multiple modes to meet the reference's.
     """
 
     errors: Array
@@ -76,7 +76,6 @@ def pair(
         errors[group] = frequencies[chosen] / reference[group] - 1
         # Cosines of the angles between the two spaces.
         mac[group] = np.linalg.svd(block, compute_uv=False).min() ** 2
-        aligned[group] = (
-            np.einsum("kl,knd->lnd", block, shapes[chosen]) * (size[group] / 1.0)[:, None, None]
-        )
+        turned = np.einsum("kl,knd->lnd", block, shapes[chosen])
+        aligned[group] = size[group][:, None, None] * turned
     return Pairing(errors, mac, order, aligned)
