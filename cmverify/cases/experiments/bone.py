@@ -173,7 +173,7 @@ def _method(degrees: float, surface: Surface = "volume", **ladder: tuple[int, ..
     return Method(name, "bond", run, levels, _warm)
 
 
-_STRAIGHT = _method(0.0, quick=(2,), standard=(3, 5), paper=(3, 5))
+_STRAIGHT = _method(0.0, quick=(2,), standard=(2, 3, 5), paper=(2, 3, 5))
 _STRAIGHT_TOO = _method(0.0, "extrapolated", standard=(3,), paper=(3, 5))
 _TURNED = tuple(_method(degrees, standard=(3,), paper=(3, 5)) for degrees in (45.0, 60.0))
 _BACK = _method(90.0, standard=(3,), paper=(5,))

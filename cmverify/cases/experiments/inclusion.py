@@ -174,7 +174,7 @@ def _method(name: str, plate: Plate, **ladder: tuple[int, ...]) -> Method:
 
 
 _METHODS = (
-    _method("steps", Plate(), quick=(24,), standard=(60, 120), paper=(60, 120, 240)),
+    _method("steps", Plate(), quick=(24,), standard=(24, 60, 120), paper=(24, 60, 120, 240)),
     _method("adaptive", Plate(overload=0.005), standard=(60,), paper=(120,)),
     _method("extrapolated", Plate("extrapolated"), standard=(60,), paper=(60, 120)),
     _method("small batches", Plate(everything=False), standard=(60,), paper=(120,)),

@@ -172,7 +172,7 @@ _METHODS = (
     _method("rims", Plate(), standard=(5,), paper=(5, 10)),
     _method("pins", Plate(turning=True), standard=(5,), paper=(5, 10)),
     _method("pins, extrapolated", Plate(True, "extrapolated"), standard=(5,), paper=(5,)),
-    _method("pins m=3", Plate(True, m=3), quick=(3,), standard=(5,), paper=(10,)),
+    _method("pins m=3", Plate(True, m=3), quick=(3,), standard=(3, 5), paper=(3, 10)),
     _method("pins m=7", Plate(True, m=7), paper=(10,)),
 )
 _NAMES = tuple(method.name for method in _METHODS)

@@ -20,7 +20,7 @@ def test_an_inclusion_cracks_symmetrically_and_its_stages_are_kept(pulled, tmp_p
     assert pulled.quantities["unmirrored"] == 0
     assert pulled.quantities["balance"] < 1e-6
     assert pulled.statistics["tips"] == 2
-    record = Record("inclusion", "steps", 18, 1, 1.0, "none", pulled)
+    record = Record("inclusion", "steps", 18, pulled, 1, 1.0, "none")
     again = load(save(record, tmp_path)).outcome
     assert [s.label for s in again.stages.stages] == [s.label for s in pulled.stages.stages]
     for one, other in zip(again.stages.stages, pulled.stages.stages, strict=True):
@@ -42,7 +42,7 @@ def test_one_bond_without_its_image_is_seen():
 def test_stiffness_of_the_notched_plate_sees_one_per_cent():
     found = []
     for scale in (1.0, 1.01):
-        scene, _ = replace(notched_plate.Plate(True), stiffness=scale).scene(3)
+        scene, _ = replace(notched_plate.Plate(True, m=3), stiffness=scale).scene(3)
         solution = scene.solve()
         from solver.reactions import reaction
 
