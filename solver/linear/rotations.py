@@ -113,8 +113,10 @@ class MasslessRotations:
         """K_θθ⁻¹ of the moments that a guess leaves."""
         if not left.any():
             return np.zeros_like(left)
-        # Relative to what the rotations balance, not to what a good guess leaves of it.
-        balanced = float(np.linalg.norm(self._diagonal * guess))
+        # Relative to what the rotations balance, not to what a good guess leaves of it, nor to the
+        # turn of a whole part, which strains nothing and may grow without bound.
+        turn = np.bincount(self.parts, guess) / np.bincount(self.parts)
+        balanced = float(np.linalg.norm(self._diagonal * (guess - turn[self.parts])))
         scale = max(float(np.linalg.norm(left)), balanced)
         left = self._sign * left
         change, stopped = cg(
