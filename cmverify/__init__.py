@@ -54,9 +54,12 @@ __all__ = [
     "UniformShear",
     "disc",
     "fracture",
+    "modes",
     "polygon",
     "recovery",
     "rectangle",
+    "transient",
+    "waves",
 ]
 
 

@@ -103,6 +103,8 @@ class Strip:
         return Scene(
             region=rectangle(2 * LENGTH, 2 * (1 + grip), centre=place(0.0), angle=self.angle),
             spacing=1.0 / n,
+            # The crack runs between two rows of particles, not on one.
+            phase=(0.0, 0.0),
             m=self.m,
             material=ElasticTensor(self.scale * self.voigt).rotated(self.angle),
             supports=[

@@ -249,7 +249,7 @@ def warm_up() -> None:
     """Compile the kernels, below and above the 2,000 unknowns of direct solvers."""
     for n in (10, 40):
         solved(Strip("edge"), 0.4, n)
-    same(1.0, 10)
+    same(1.0, 20)
 
 
 STRIPS = {

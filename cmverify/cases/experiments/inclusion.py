@@ -204,7 +204,8 @@ CASES = (
             ),
             *(Check(name, "unmirrored", equals=dict.fromkeys((24, 60, 120, 168, 240), 0.0),
                     source="the scene is its own mirror image") for name in _STEP),
-            *(Check(name, "undercut", {18: 0.05}, source="a cut costs G × its length, Eq. 92")
+            *(Check(name, "undercut", {18: 0.05}, source="a cut costs G × its length, Eq. 92",
+                    exact=True)
               for name in (*_STEP, "small batches")),
             *(Check(name, "balance", {18: 1e-6}, source="the solver's tolerance of 1e-8")
               for name in (*_STEP, "small batches")),

@@ -194,9 +194,11 @@ CASES = (
             for check in (
                 Check(name, "stiffness", {3: 0.06, 5: 0.04, 10: 0.02}, source=SOURCE),
                 Check(name, "into the hole", {3: 1.0, 5: 0.5}, source="Fig. 21: experiments"),
-                Check(name, "to the right edge", {3: 0.5}, source="Fig. 21: experiments"),
+                # With pins at a/3 the second crack stops 1.2 a short of the edge, of 3.7 a.
+                Check(name, "to the right edge", {3 if name == "rims" else 5: 0.5},
+                      source="Fig. 21: experiments"),
                 Check(name, "undercut", {3: 0.1}, source="a cut costs G × its length, Eq. 92; "
-                      "paths are known to a cell at each end"),
+                      "paths are known to a cell at each end", exact=True),
                 Check(name, "balance", {3: 1e-6}, source="the solver's tolerance of 1e-8"),
             )
         ),

@@ -204,7 +204,10 @@ def test_a_crack_between_pins_grows_straight_and_its_energies_balance(surface, t
     )  # fmt: skip
 
     def run(solves, **options):
-        return fracture.grow(scene, 1e-6, max_solves=solves, no_fail=pins, **options)
+        # Solved more tightly than the balance is asked for: pins have long levers.
+        return fracture.grow(
+            scene, 1e-6, max_solves=solves, no_fail=pins, tolerance=1e-9, **options
+        )
 
     whole = run(24, monitors={"up": lambda run: reaction(run.solution, pins[1]).force[1]})
     h = whole.history
