@@ -44,7 +44,7 @@ def _intensities(geometry: str, ratios: list[float], citation: str) -> Reference
             "geometry": geometry,
             "ratios": ratios,
             "materials": list(MATERIALS),
-            "elements": 20,
+            "elements": 24,
         },
         spot={"materials": ["anisotropic"], "ratios": ratios[1:2]},
         axis="ratios",

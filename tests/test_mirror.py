@@ -33,9 +33,6 @@ ELSEWHERE = {
     "cmverify/cases/recovered.py": "tests/cmverify/faults/test_table.py",
     "cmverify/cases/solids.py": "tests/cmverify/faults/test_table.py",
     "cmverify/cases/yardsticks.py": "tests/cmverify/faults/test_table.py",
-    "cmverify/cases/modes/pairing.py": "tests/convergence/test_cases.py",
-    "cmverify/cases/modes/plates.py": "tests/convergence/test_cases.py",
-    "cmverify/cases/modes/tetrachiral.py": "tests/convergence/test_cases.py",
     # Tables and the command that prints them.
     "cmverify/faults/changes.py": "tests/cmverify/faults/test_fault.py",
     "cmverify/faults/command.py": "tests/cmverify/faults/test_table.py",

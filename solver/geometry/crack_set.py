@@ -24,17 +24,18 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-import numba as nb
 import numpy as np
 import shapely
 
 from ..arrays import Array, Indices, Mask
+from ..compiled import kernel
+from . import exact
 from .exact import CELL, Frame, side, sign_of_cross
 from .inside import Body, _span, near_segments
 from .lattice import Lattice
 from .regions import Crack
 
-_OPTIONS: Any = {"cache": True, "nogil": True}
+_OPTIONS: Any = {"nogil": True}
 # Units within which ends are one point: twice the rounding of each.
 _SAME = 2.0
 # Units by which an end that is meant to meet something goes beyond it.
@@ -192,7 +193,7 @@ def _reach_edges(pieces: Array, tips: Mask, body: Body) -> Mask:
     return found
 
 
-@nb.njit(**_OPTIONS)
+@kernel(uses=(exact.__file__,), **_OPTIONS)
 def _touches(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> bool:
     """Whether p lies on the closed segment from a to b."""
     if side(ax, ay, bx, by, px, py) != 0:
@@ -200,7 +201,7 @@ def _touches(ax: float, ay: float, bx: float, by: float, px: float, py: float) -
     return min(ax, bx) <= px <= max(ax, bx) and min(ay, by) <= py <= max(ay, by)
 
 
-@nb.njit(**_OPTIONS)
+@kernel(uses=(exact.__file__,), **_OPTIONS)
 def _mark_tips(tips: Mask, pieces: Array) -> None:
     for k in range(len(pieces)):
         for end in range(2):
@@ -221,7 +222,7 @@ def _mark_tips(tips: Mask, pieces: Array) -> None:
             tips[k, end] = alone
 
 
-@nb.njit(**_OPTIONS)
+@kernel(uses=(exact.__file__,), **_OPTIONS)
 def _mark_lying(on: Mask, number: Indices, points: Array, pieces: Array, tips: Mask) -> None:
     """Mark particles that lie on the set, tips aside."""
     rows, columns = number.shape
@@ -243,7 +244,7 @@ def _mark_lying(on: Mask, number: Indices, points: Array, pieces: Array, tips: M
                 on[p] = not tip
 
 
-@nb.njit(**_OPTIONS)
+@kernel(uses=(exact.__file__,), **_OPTIONS)
 def _moved(vx: float, vy: float) -> int:
     """Sign of δ × v for the displacement δ = (ε², ε) of a particle on the set."""
     if vx != 0.0:
@@ -251,7 +252,7 @@ def _moved(vx: float, vy: float) -> int:
     return 1 if vy > 0.0 else (-1 if vy < 0.0 else 0)
 
 
-@nb.njit(**_OPTIONS)
+@kernel(uses=(exact.__file__,), **_OPTIONS)
 def _beside(
     px: float, py: float, qx: float, qy: float, on_p: bool, on_q: bool, x: float, y: float
 ) -> int:
@@ -267,7 +268,7 @@ def _beside(
     return _moved(x - px, y - py)
 
 
-@nb.njit(**_OPTIONS)
+@kernel(uses=(exact.__file__,), **_OPTIONS)
 def cuts(
     px: float,
     py: float,
@@ -309,7 +310,7 @@ def cuts(
     return not ((a == 0 and tip_a) or (b == 0 and tip_b))
 
 
-@nb.njit(**_OPTIONS)
+@kernel(uses=(exact.__file__,), **_OPTIONS)
 def _mark_cut(
     found: Mask,
     some: Mask,
