@@ -44,6 +44,8 @@ class Bonds:
         always there they make no surface: the bonds that are left are not stiffened.
     sharp_tips : bool
         Whether the two faces of a crack share the node of each tip; they must not once it grows.
+    outline : Outline, optional
+        The body's, with these cracks and tips, where it has been drawn already.
 
     Raises
     ------
@@ -60,8 +62,10 @@ class Bonds:
         prescribed: Mask | None = None,
         broken: Mask | None = None,
         sharp_tips: bool = True,
+        outline: Outline | None = None,
     ) -> None:
         self.lattice, self.family, self.treatment = lattice, family, treatment
+        self._drawn = outline
         rows, columns = lattice.rows_columns
         free = np.ones(lattice.count, bool) if prescribed is None else ~prescribed
         longest = float(np.hypot(*family.offsets.T).max()) * (1 + _TIE)
@@ -207,7 +211,9 @@ class Bonds:
         for at, gone in ((cut_at, cut), (self.outside_at, self.outside)):
             kept = np.isin(at, particles)
             lost[:, np.searchsorted(particles, at[kept])] |= gone[:, kept]
-        outline = Outline.of(lattice.region, self.cracks, lattice.spacing, sharp_tips=sharp_tips)
+        outline = self._drawn or Outline.of(
+            lattice.region, self.cracks, lattice.spacing, sharp_tips=sharp_tips
+        )
         free = free[particles]
         ended = EndedBonds.of(lattice, family, outline, particles[free], lost[:, free])
         if free.all():

@@ -122,11 +122,17 @@ class Discretisation:
         load = _loads(scene, lattice, moduli)
         sharp_tips = sharp_tips and scene.broken is None
         on_edges = edge_loads(scene, lattice, sharp_tips)
+        # Loads act on the nodes at which bonds end: one outline serves both.
+        outline = on_edges[0].outline if on_edges else None
         broken = scene.broken(lattice, family) if scene.broken else None
         held = _held(scene, prescribed)
         aside = np.zeros(lattice.count, dtype=bool)
         while True:
-            bonds = Bonds(lattice.centred, family, cracks, scene.surface, held, broken, sharp_tips)
+            bonds = Bonds(
+                lattice.centred, family, cracks, scene.surface, held, broken, sharp_tips, outline
+            )
+            if bonds.ended is not None:
+                outline = bonds.ended.outline
             _hold_edges(scene, bonds, moduli)
             operator = BondOperator(bonds, moduli, prescribed)
             loose, why = mechanisms.find(
