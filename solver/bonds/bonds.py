@@ -203,8 +203,8 @@ class Bonds:
         lattice, family = self.lattice, self.family
         particles = np.union1d(np.union1d(self.short, cut_at), self.outside_at)
         # A particle that has lost all its bonds to others holds no surface.
-        rubble = broken_at[self.strengths_of(broken_at).sum(axis=0) == 0]
-        particles = np.setdiff1d(particles, rubble, assume_unique=True)
+        bare = broken_at[self.strengths_of(broken_at).sum(axis=0) == 0]
+        particles = np.setdiff1d(particles, bare, assume_unique=True)
         if not free[particles].any():
             return None
         lost = ~self.exist(particles)

@@ -320,7 +320,7 @@ class Equilibrium:
         """Particles whose own bonds leave them a motion without stiffness."""
         return mechanisms.slack_particles(self.operator)
 
-    def loose(self) -> Indices:
+    def fragments(self) -> Indices:
         """Particles of parts that nothing holds any more."""
         held = self.prescribed
         physics, constraints = self.operator.moduli.physics, self.sound.constraints
@@ -329,7 +329,7 @@ class Equilibrium:
         none = np.zeros(len(self.aside), dtype=bool)
         return np.nonzero(np.logical_or.reduce([none, *found]) & ~held.all(axis=0))[0]
 
-    def hinged(self) -> Indices:
+    def hinges(self) -> Indices:
         """Particles that can move without straining a bond (slow: only after a failed solve)."""
         return mechanisms.zero_energy_particles(method.positive(self.operator, self.kind))
 

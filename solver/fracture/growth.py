@@ -248,7 +248,7 @@ class Growth(Result):
         elif not self.precise:
             self._solve(0)
         elif not self.resting:
-            self._drop(self.body.loose())
+            self._set_aside(self.body.fragments())
             self.resting = True
             self.record()
             self._ended()
@@ -299,7 +299,7 @@ class Growth(Result):
         if not np.isfinite(event):
             batch = batch[:0]
         if event > self.programme.stop or not len(batch):
-            self._drop(self.body.loose())
+            self._set_aside(self.body.fragments())
             if self.ledger.unloaded:
                 self.resting = True
                 self.record()
@@ -335,7 +335,7 @@ class Growth(Result):
     def _break(self, batch: Indices) -> None:
         self.ledger.broken(batch, self.load_factor)
         self._remove(batch, dropped=False)
-        self._drop(self.body.slack())
+        self._set_aside(self.body.slack())
         # Within an avalanche it is enough to tell overloaded bonds from others.
         rough = self.programme.control == "fixed"
         self._solve(len(batch), max(_ROUGH, self.body.tolerance) if rough else None)
@@ -346,12 +346,12 @@ class Growth(Result):
             step = self.body.solve(tolerance)
         except (ConvergenceError, NegativeCurvatureError):
             # A part that moves freely may be behind it.
-            particles = self.body.loose()
+            particles = self.body.fragments()
             if not len(particles):
-                particles = self.body.hinged()
+                particles = self.body.hinges()
             if not len(particles):
                 raise
-            self._drop(particles)
+            self._set_aside(particles)
             step = self.body.solve(tolerance)
         self.precise = tolerance is None or tolerance <= self.body.tolerance
         self.solves.append((broken, step.iterations, step.refreshed))
@@ -363,7 +363,7 @@ class Growth(Result):
         self.body.follow()
         self.ledger.parted(self.load_factor)
 
-    def _drop(self, particles: Indices) -> None:
+    def _set_aside(self, particles: Indices) -> None:
         """Set aside particles that cannot carry load, and others that this leaves slack."""
         while len(particles):
             bonds = self.bonds.of_particles(particles)
