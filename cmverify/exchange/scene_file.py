@@ -142,8 +142,8 @@ def read(path: Path) -> tuple[Scene, dict[str, Any]]:
 
 def _asked(file: SceneFile, source: Source) -> tuple[str, dict[str, Any]]:
     """The analysis that a file asks for, and its keywords."""
+    from solver import state_file
     from solver.analyses import analyses
-    from solver.fracture import checkpoint
 
     given = {name: getattr(file, name, None) for name in analyses() if name != "solve"}
     asked = {name: table for name, table in given.items() if table is not None}
@@ -154,7 +154,7 @@ def _asked(file: SceneFile, source: Source) -> tuple[str, dict[str, Any]]:
     options = {key: getattr(table, key) for key in table.model_fields_set}
     if "checkpoint" in options:
         with source.at(name, "checkpoint"):
-            checkpoint.check(options["checkpoint"])
+            state_file.check(options["checkpoint"])
     return name, options
 
 

@@ -14,7 +14,8 @@ from ..linear.rotations import MasslessRotations
 from ..problem import Description, Discretisation, Forcing
 from ..problem.conditions import Value, evaluate
 from ..problem.rigid import parts
-from .recording import Log, Progress, Series, StateFile, fingerprint, nearest
+from ..state_file import StateFile
+from .recording import Log, Progress, Series, fingerprint, nearest
 from .stepping import (
     ROTATIONAL_INERTIA,
     InertRotations,

@@ -8,7 +8,6 @@ a fingerprint of what decides it besides.
 
 from __future__ import annotations
 
-import hashlib
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -19,6 +18,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .. import state_file
 from ..arrays import Array, Indices
 from ..errors import SceneError
 from ..geometry import Lattice
@@ -130,7 +130,7 @@ class Series:
 
     def __init__(self, stem: str | os.PathLike[str], lattice: Lattice) -> None:
         self.stem, self.points = Path(stem), lattice.points
-        check_writable(suffixed(self.stem, ".pvd"))
+        state_file.check(suffixed(self.stem, ".pvd"), "series")
 
     def write(self, number: int, times: Sequence[float], fields: Mapping[str, Array]) -> None:
         """Write the fields of frame `number` and list the frames of `times`."""
@@ -163,98 +163,6 @@ class Series:
         return self.stem.with_name(f"{self.stem.name}_{number:05d}.vtu")
 
 
-class StateFile:
-    """The last state of a run, and whether it belongs to the run that asks for it.
-
-    Parameters
-    ----------
-    path : path, optional
-        None: nothing is kept.
-    mark : str
-        Fingerprint of everything that decides the run's results, see `fingerprint`.
-
-    Raises
-    ------
-    SceneError
-        If the folder is missing or cannot be written to.
-    """
-
-    def __init__(self, path: str | os.PathLike[str] | None, mark: str) -> None:
-        self.path, self.mark = None if path is None else Path(path), mark
-        if self.path is not None:
-            check_writable(self.path)
-
-    def save(self, state: Mapping[str, Any]) -> None:
-        """Write a state; a kill at any moment leaves the old file or the new one."""
-        if self.path is None:
-            return
-        arrays: dict[str, Any] = {name: np.asarray(value) for name, value in state.items()}
-        arrays["fingerprint"] = np.asarray(self.mark)
-        arrays["digest"] = np.asarray(digest(arrays))
-
-        def write(path: Path) -> None:
-            with open(path, "wb") as file:
-                np.savez(file, **arrays)
-                file.flush()
-                os.fsync(file.fileno())
-
-        _whole(self.path, write)
-
-    def load(self) -> dict[str, Any] | None:
-        """The saved state, None if there is none.
-
-        Raises
-        ------
-        SceneError
-            If the file is damaged, or belongs to another run.
-        """
-        if self.path is None or not self.path.exists():
-            return None
-        try:
-            with np.load(self.path, allow_pickle=False) as file:
-                found = dict(file)
-        except (OSError, ValueError, EOFError, KeyError) as error:
-            raise SceneError(f"{self.path} is no state of a run: {error}") from error
-        except Exception as error:  # zipfile and zlib have errors of their own
-            raise SceneError(f"{self.path} is damaged: {error}") from error
-        told = str(found.pop("digest", ""))
-        if told != digest(found):
-            raise SceneError(f"{self.path} is damaged: its content is not what was written")
-        if str(found.pop("fingerprint")) != self.mark:
-            raise SceneError(
-                f"the state {self.path} belongs to another scene, start or way of stepping: "
-                f"remove it or name another file"
-            )
-        return found
-
-
-def check_writable(path: Path) -> None:
-    """Refuse a file that cannot be written, before any work.
-
-    Raises
-    ------
-    SceneError
-    """
-    if not path.parent.is_dir():
-        raise SceneError(f"{path} cannot be written: there is no folder {path.parent}")
-    if not os.access(path.parent, os.W_OK) or path.is_dir():
-        raise SceneError(f"{path} cannot be written: no permission, or it is a folder")
-
-
-def digest(parts: Mapping[str, Any]) -> str:
-    """Hash of names and values, arrays by their bytes."""
-    found = hashlib.sha256()
-    for name in sorted(parts):
-        part = parts[name]
-        found.update(name.encode())
-        if isinstance(part, np.ndarray):
-            found.update(f"{part.dtype}{part.shape}".encode())
-            found.update(np.ascontiguousarray(part).tobytes())
-        else:
-            found.update(repr(part).encode())
-    return found.hexdigest()
-
-
 def fingerprint(body: Discretisation, **parts: Any) -> str:
     """Hash of a body and of whatever else decides a run's results.
 
@@ -276,7 +184,7 @@ def fingerprint(body: Discretisation, **parts: Any) -> str:
     }
     if ended is not None:
         known["ended"] = np.concatenate([ended.position, ended.length])
-    return digest(known | parts)
+    return state_file.fingerprint(**known, **parts)
 
 
 def _whole(path: Path, write: Callable[[Path], Any]) -> None:

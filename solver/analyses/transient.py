@@ -35,12 +35,12 @@ from ..problem import Description, Discretisation, Forcing
 from ..problem.conditions import Value, evaluate
 from ..problem.rigid import parts
 from ..result import Result, Table
+from ..state_file import StateFile
 from .recording import (
     History,
     Log,
     Progress,
     Series,
-    StateFile,
     checked_times,
     fingerprint,
     nearest,

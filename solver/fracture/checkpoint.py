@@ -7,90 +7,58 @@ next solve starts from it), and the preconditioner's coarse matrix with the bond
 
 from __future__ import annotations
 
-import hashlib
 import os
 from collections.abc import Mapping
-from contextlib import suppress
-from functools import cache
-from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy import sparse
 from threadpoolctl import threadpool_limits
 
-from ..errors import SceneError
+from .. import state_file
 from ..linear import Border, TwoLevel, method
 from ..operators import BondOperator
+from ..state_file import StateFile
 
 if TYPE_CHECKING:
     from .growth import Growth
 
 _BORDER = ("coupling", "stiffness", "force")
-# What is hashed into the file to tell damage from content.
-_DIGEST = "digest"
-
-
-@cache
-def code() -> str:
-    """Hash of this package's sources and of the versions of the libraries that round for it.
-
-    Other code would go on from the same state and end in other bits, and nobody would know
-    which part of the run was made by which.
-    """
-    package = Path(__file__).parents[1]
-    digest = hashlib.sha256()
-    for path in sorted(package.rglob("*.py")):
-        digest.update(path.relative_to(package).as_posix().encode())
-        digest.update(path.read_bytes())
-    for library in ("numpy", "scipy", "numba"):
-        try:
-            digest.update(f"{library}={version(library)}".encode())
-        except PackageNotFoundError:  # a copy that no installer knows
-            digest.update(library.encode())
-    return digest.hexdigest()
 
 
 def fingerprint(run: Growth) -> str:
     """Hash of everything that decides the results of a run, the code included."""
     start, bonds = run.body.sound, run.bonds
-    digest = hashlib.sha256()
-    parts: list[Any] = [
-        code(),
-        start.lattice.mask,
-        start.lattice.points[0],
-        start.family.offsets,
-        start.operator.blocks,
-        start.prescribed,
-        start.values,
-        start.load,
-        start.nodal_load,
-        start.scene.surface,
-        bonds.whole,
-        bonds.critical,
-        bonds.kept,
-        run.programme,
-        run.options,
-        run.history.names,
-    ]
+    parts: dict[str, Any] = {
+        "mask": start.lattice.mask,
+        "corner": start.lattice.points[0],
+        "offsets": start.family.offsets,
+        "blocks": start.operator.blocks,
+        "prescribed": start.prescribed,
+        "values": start.values,
+        "load": start.load,
+        "nodal": start.nodal_load,
+        "surface": start.scene.surface,
+        "whole": bonds.whole,
+        "critical": bonds.critical,
+        "kept": bonds.kept,
+        "programme": run.programme,
+        "options": run.options,
+        "history": run.history.names,
+    }
     if start.constraints is not None:
         basis = start.constraints.basis
-        parts += [start.constraints.slaves, basis.data, basis.indices, basis.indptr]
+        parts |= {
+            "slaves": start.constraints.slaves,
+            "basis": basis.data,
+            "basis rows": basis.indices,
+            "basis columns": basis.indptr,
+        }
     if start.bonds.ended is not None:
         ended = start.bonds.ended
-        parts += [ended.particle, ended.offset, ended.edge, ended.position, ended.length]
-    for part in parts:
-        _feed(digest, part)
-    return digest.hexdigest()
-
-
-def _feed(digest: Any, part: Any) -> None:
-    if isinstance(part, np.ndarray):
-        digest.update(f"{part.dtype}{part.shape}".encode())
-        digest.update(np.ascontiguousarray(part).tobytes())
-    else:
-        digest.update(repr(part).encode())
+        names = ("particle", "offset", "edge", "position", "length")
+        parts |= {f"ended {name}": getattr(ended, name) for name in names}
+    return state_file.fingerprint(**parts)
 
 
 def save(run: Growth, path: str | os.PathLike[str], mark: str) -> None:
@@ -103,7 +71,6 @@ def save(run: Growth, path: str | os.PathLike[str], mark: str) -> None:
     """
     body, ledger = run.body, run.ledger
     arrays: dict[str, Any] = {
-        "fingerprint": mark,
         "factor": run.load_factor,
         "target": run.target,
         "resting": run.resting,
@@ -135,7 +102,7 @@ def save(run: Growth, path: str | os.PathLike[str], mark: str) -> None:
         }
     if body.border is not None:
         arrays |= {f"border_{name}": getattr(body.border, name) for name in _BORDER}
-    _write(path, arrays)
+    StateFile(path, mark).save(arrays)
 
 
 def load(run: Growth, path: str | os.PathLike[str], mark: str) -> bool:
@@ -146,7 +113,7 @@ def load(run: Growth, path: str | os.PathLike[str], mark: str) -> bool:
     SceneError
         If the file belongs to another scene, toughness or programme, or is no checkpoint.
     """
-    found = _read(path, mark)
+    found = StateFile(path, mark).load()
     if found is None:
         return False
     # As every solve does: BLAS sums in another order with more threads, and the preconditioner
@@ -180,83 +147,3 @@ def _restore(run: Growth, found: Mapping[str, Any]) -> None:
     body.masters = found["masters"]
     if body.rhs is not None and "border_force" in found:
         body.border = Border(*(found[f"border_{name}"] for name in _BORDER))
-
-
-def check(path: str | os.PathLike[str]) -> None:
-    """Refuse a path that could not be written, before any work.
-
-    Raises
-    ------
-    SceneError
-        If its folder does not exist or takes no files, or it is a folder itself.
-    """
-    target = Path(path)
-    if not target.name:
-        raise SceneError(f"the checkpoint {path} names no file")
-    partial = _partial(target)
-    try:
-        if target.is_dir():
-            raise SceneError(f"the checkpoint {path} is a folder, not a file")
-        if not target.parent.is_dir():
-            raise SceneError(f"the checkpoint {path} lies in a folder that does not exist")
-        partial.touch()
-    except OSError as error:
-        raise SceneError(f"the checkpoint {path} cannot be written: {error.strerror}") from error
-    finally:
-        _discard(partial)
-
-
-def _digest(arrays: Mapping[str, Any]) -> str:
-    digest = hashlib.sha256()
-    for name in sorted(set(arrays) - {_DIGEST}):
-        digest.update(name.encode())
-        _feed(digest, np.asarray(arrays[name]))
-    return digest.hexdigest()
-
-
-def _partial(target: Path) -> Path:
-    return target.with_name(f"{target.name}.{os.getpid()}.partial")
-
-
-def _discard(path: Path) -> None:
-    # What cannot be removed could not be made either: the first error is the one to tell.
-    with suppress(OSError):
-        path.unlink(missing_ok=True)
-
-
-def _write(path: str | os.PathLike[str], arrays: Mapping[str, Any]) -> None:
-    target = Path(path)
-    partial = _partial(target)
-    try:
-        with open(partial, "wb") as file:
-            np.savez(file, **{**arrays, _DIGEST: _digest(arrays)})
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(partial, target)
-    except OSError as error:
-        raise SceneError(
-            f"the checkpoint {path} cannot be written: {error.strerror or error}"
-        ) from error
-    finally:
-        _discard(partial)
-
-
-def _read(path: str | os.PathLike[str], mark: str) -> dict[str, Any] | None:
-    check(path)
-    if not Path(path).exists():
-        return None
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            found = {name: file[name] for name in file.files}
-    except Exception as error:
-        # Whatever damaged bytes make zipfile, zlib and NumPy raise: a dozen kinds.
-        said = " ".join(str(error).split()) or type(error).__name__
-        raise SceneError(f"{path} is no checkpoint: {said}") from error
-    if _DIGEST not in found or str(found[_DIGEST]) != _digest(found):
-        raise SceneError(f"{path} is no checkpoint, or a damaged one: remove it")
-    if str(found["fingerprint"]) != mark:
-        raise SceneError(
-            f"the checkpoint {path} belongs to another scene, toughness or programme, or was made "
-            f"by other code: remove it or name another file"
-        )
-    return found

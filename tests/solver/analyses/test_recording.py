@@ -34,30 +34,3 @@ def test_a_log_grows():
     again = recording.Log(2, log.rows)
     again.append(np.array([7.0, 7.0]))
     assert again.rows.shape == (1001, 2)
-
-
-def test_a_state_comes_back_as_it_was_or_is_refused(tmp_path):
-    path = tmp_path / "state.npz"
-    file = recording.StateFile(path, "mine")
-    assert file.load() is None
-    state = {"x": np.arange(5.0), "count": 3, "nothing": np.zeros((0, 4))}
-    file.save(state)
-    found = file.load()
-    assert set(found) == set(state)
-    for name, value in state.items():
-        np.testing.assert_array_equal(found[name], value)
-    with pytest.raises(SceneError, match="belongs to another"):
-        recording.StateFile(path, "yours").load()
-    content = bytearray(path.read_bytes())
-    content[len(content) // 2] ^= 1
-    path.write_bytes(bytes(content))
-    with pytest.raises(SceneError, match=r"damaged|no state|belongs"):
-        file.load()
-    path.write_bytes(b"no archive")
-    with pytest.raises(SceneError, match=r"damaged|no state"):
-        file.load()
-    assert recording.StateFile(None, "").load() is None
-    with pytest.raises(SceneError, match="no folder"):
-        recording.StateFile(tmp_path / "no" / "state", "")
-    with pytest.raises(SceneError, match="it is a folder"):
-        recording.StateFile(tmp_path, "")

@@ -6,10 +6,20 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_info
 
-from solver import Crack, ElasticTensor, Programme, Scene, SceneError, Support, Toughness
+from solver import (
+    Crack,
+    ElasticTensor,
+    Programme,
+    Scene,
+    SceneError,
+    Support,
+    Toughness,
+    state_file,
+)
 from solver import rectangle as rectangle_of
 from solver.fracture import checkpoint, grow
 from solver.linear import TwoLevel
+from solver.state_file import StateFile
 from tests.solver.fracture.strip import scene
 
 
@@ -71,7 +81,7 @@ def test_damaged_files_are_refused_or_say_the_same(tmp_path):
     """A run must never go on from something else than what was saved."""
     path = tmp_path / "run.npz"
     mark = checkpoint.fingerprint(run(path, solves=4))
-    good, saved = path.read_bytes(), checkpoint._read(path, mark)
+    good, saved = path.read_bytes(), StateFile(path, mark).load()
     chance, refused = random.Random(1), []
     for kind in range(400):
         bad = bytearray(good)
@@ -84,7 +94,7 @@ def test_damaged_files_are_refused_or_say_the_same(tmp_path):
             bad[at : at + chance.randrange(40)] = chance.randbytes(chance.randrange(40))
         path.write_bytes(bad)
         try:
-            found = checkpoint._read(path, mark)
+            found = StateFile(path, mark).load()
         except SceneError as error:
             refused.append(str(error))
             continue
@@ -96,7 +106,7 @@ def test_damaged_files_are_refused_or_say_the_same(tmp_path):
 def test_a_checkpoint_of_other_code_is_not_taken(tmp_path, monkeypatch):
     path = tmp_path / "run.npz"
     run(path, solves=4)
-    monkeypatch.setattr(checkpoint, "code", lambda: "other")
+    monkeypatch.setattr(state_file, "code", lambda: "other")
     with pytest.raises(SceneError, match="other code"):
         run(path)
 
