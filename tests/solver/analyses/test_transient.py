@@ -246,7 +246,7 @@ def test_a_killed_run_goes_on_bit_for_bit(tmp_path, surface, after):
     with pytest.raises(SceneError, match="belongs to another"):
         transient.run(*arguments, tolerance=1e-3, **options)
     state.write_bytes(state.read_bytes()[:-200])
-    with pytest.raises(SceneError, match=r"damaged|no state"):
+    with pytest.raises(SceneError, match=r"damaged|no checkpoint"):
         transient.run(*arguments, **options)
 
 
