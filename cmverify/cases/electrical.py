@@ -200,6 +200,7 @@ def same(scale: float, n: int) -> Measurement:
     """A turned conductor with a crack, once of heat and once of current; and a uniform field."""
     from solver import ConductivityTensor, Crack, Load, MechanismError, Scene, Support, recovery
     from solver import rectangle as plate
+    from solver.reactions import supply
 
     sigma = bone(scale)
     common: dict[str, Any] = {"spacing": 1.0 / n, "m": M}
@@ -228,6 +229,7 @@ def same(scale: float, n: int) -> Measurement:
     except MechanismError as error:
         refused = float("floating conductor" in str(error))
     density = recovery.current_density
+    fed = 3.0 * live.spacing**2 * float(region(FED).contains(*live.points.T).sum())
     return Measurement(
         live.statistics.unknowns,
         {
@@ -237,6 +239,7 @@ def same(scale: float, n: int) -> Measurement:
                 density(uniform)[inside], np.broadcast_to(current, (inside.sum(), 2))
             ),
             "Joule heat": relative_l2(heat, np.full(len(heat), -current @ field)),
+            "drained": abs(supply(live, region(DRAINED)) / fed + 1.0),
             "refused": refused,
         },
         adapters.solver_seconds(live.statistics),
@@ -377,6 +380,13 @@ CASES = (
                 Check("bond/heat", q, {20: 1e-9}, source="exact on the lattice's sums", exact=True)
                 for q in ("current density", "Joule heat")
             ),
+            Check(
+                "bond/heat",
+                "drained",
+                {20: 1e-7},
+                exact=True,
+                source="what is fed in leaves by the particles that are held",
+            ),
             Check("bond/heat", "refused", equals={20: 1.0}, source="its level is undetermined"),
         ),
         quantities={
@@ -387,6 +397,7 @@ CASES = (
             "current and flux": "largest difference, A/m² and W/m²",
             "current density": "current density of a uniform field",
             "Joule heat": "heat of a uniform field",
+            "drained": "current of the held particles beside what is fed in",
             "refused": "whether a plate without a potential is refused as a floating conductor",
         },
         primary="drop",
