@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import LinearOperator
-from threadpoolctl import threadpool_limits
 
 from ..arrays import Array, Mask
+from ..blas import one_thread
 from ..errors import ConvergenceError, MechanismError, NegativeCurvatureError, SceneError
 from ..linear import TwoLevel, eigen, method
 from ..linear.condensed import Condensed
@@ -181,7 +181,7 @@ def solve(scene: Description, count: int, tolerance: float = 1e-8) -> Modes:
             f"them, are found on bodies of up to {_DENSE_MOST} only"
         )
     small |= count > _MOST
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_thread():
         search = _Search(discretisation, mass, rigid, count, tolerance)
         pairs, checked, prepared = search.directly() if small else search.iteratively(begun)
     vectors = pairs.vectors.T.reshape(count, operator.components, -1)

@@ -7,9 +7,9 @@ from time import perf_counter
 
 import numpy as np
 from scipy.sparse.linalg import LinearOperator
-from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
+from ..blas import one_thread
 from ..errors import ConvergenceError
 from ..linear import Bordered, Task, method
 from ..problem import Description, Discretisation
@@ -58,7 +58,7 @@ def solve(
         raise ValueError(f"the tolerance must lie between 0 and 1, not {tolerance}")
     begun = perf_counter()
     operator, kind = discretisation.operator, discretisation.stability.kind
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_thread():
         rhs = discretisation.right_hand_side()
         start = _start(discretisation, previous)
         border = None if discretisation.constraints is None else border_of(discretisation)

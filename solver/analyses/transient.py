@@ -26,9 +26,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
+from ..blas import one_thread
 from ..errors import ConvergenceError, SceneError
 from ..linear.shifted import Shifted
 from ..problem import Description, Discretisation, Forcing
@@ -216,7 +216,7 @@ def run(
     marching = _March(body, scene, initial, wanted, start, tolerance, step)
     marching.record(probes, series, checkpoint, every)
     setup = perf_counter() - begun
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_thread():
         marching.go(progress)
     return marching.result(setup, perf_counter() - begun - setup)
 
@@ -299,7 +299,7 @@ class _March:
         self.time, self.length, self.h, self.supplied, self.error = state["numbers"].tolist()
         self.low, self.high = state["span"].tolist()
         self.steps, self.rejected, self.solver.iterations, built = state["counts"].tolist()
-        with threadpool_limits(limits=1, user_api="blas"):
+        with one_thread():
             anchor = float(state["anchor"])
             self.solver.restore(None if np.isnan(anchor) else anchor)
         self.solver.built = built

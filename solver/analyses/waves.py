@@ -22,9 +22,9 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
+from ..blas import one_thread
 from ..errors import SceneError
 from ..problem import Description, Discretisation, Forcing
 from ..problem.conditions import Value
@@ -232,7 +232,7 @@ def run(
         scene, end, times, start, step, courant, scheme, rotations, damping, tolerance
     )
     body = Discretisation.of(scene.at(start), free=True)
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_thread():
         motion = Motion(body, scene, initial, velocity, settings)
         motion.record(probes, series, checkpoint, every)
         setup = perf_counter() - begun

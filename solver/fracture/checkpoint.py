@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy import sparse
-from threadpoolctl import threadpool_limits
 
 from .. import state_file
+from ..blas import one_thread
 from ..linear import Border, TwoLevel, method
 from ..operators import BondOperator
 from ..state_file import StateFile
@@ -118,7 +118,7 @@ def load(run: Growth, path: str | os.PathLike[str], mark: str) -> bool:
         return False
     # As every solve does: BLAS sums in another order with more threads, and the preconditioner
     # that is made here would differ in its last bits from the one that the run had.
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_thread():
         _restore(run, found)
     return True
 

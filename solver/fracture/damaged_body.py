@@ -13,9 +13,9 @@ from time import perf_counter
 
 import numpy as np
 from scipy.sparse.linalg import LinearOperator
-from threadpoolctl import threadpool_limits
 
 from ..arrays import Array, Indices, Mask
+from ..blas import one_thread
 from ..bonds import Bonds
 from ..bonds.parting import Pieces, part
 from ..errors import ConvergenceError, MechanismError
@@ -350,7 +350,7 @@ class Equilibrium:
         """
         begun = perf_counter()
         tolerance = self.tolerance if tolerance is None else tolerance
-        with threadpool_limits(limits=1, user_api="blas"):
+        with one_thread():
             operator = self.operator
             if self.rhs is None:
                 unmoved = self._before_masters()

@@ -18,9 +18,9 @@ import warnings
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, lobpcg
-from threadpoolctl import threadpool_limits
 
 from ..arrays import Mask
+from ..blas import one_thread
 from ..bonds import Bonds
 from ..errors import MechanismError
 from ..linear import TwoLevel
@@ -72,7 +72,7 @@ def zero_energy_particles(operator: BondOperator) -> NDArray[np.int64]:
             matmat=lambda x: diagonal[:, None] * x,
         )
         # Reductions must not depend on BLAS's threads.
-        with warnings.catch_warnings(), threadpool_limits(limits=1, user_api="blas"):
+        with warnings.catch_warnings(), one_thread():
             # It warns of modes above the lowest that have not converged; only zeros matter.
             warnings.simplefilter("ignore", UserWarning)
             values, vectors = lobpcg(

@@ -28,7 +28,7 @@ import numpy as np
 
 from cmverify.case import Case, Check, Curve, Level, LinePlot, Measurement, Method
 
-from .running import DESCRIPTIONS, Led, lead
+from .running import DESCRIPTIONS, WARM, Led, lead
 
 if TYPE_CHECKING:
     from solver import Scene
@@ -79,8 +79,8 @@ class Specimen:
         )  # fmt: skip
         return scene, pins
 
-    def led(self, n: int) -> Led:
-        """The run until the force has fallen to a fifth of its peak (coarsest: to 0.6)."""
+    def led(self, n: int, max_solves: int = 1_500) -> Led:
+        """The run until the force has fallen to a fifth of its peak (coarsest: to 0.8)."""
         from solver import Programme, Toughness
 
         scene, pins = self.scene(n)
@@ -89,9 +89,9 @@ class Specimen:
         )
         coarse = n <= 2
         programme = Programme(
-            stop=2.0, increment=STEP * (20 if coarse else 1), least_force=0.6 if coarse else 0.2
+            stop=2.0, increment=STEP * (20 if coarse else 1), least_force=0.8 if coarse else 0.2
         )
-        return lead(scene, toughness, programme, no_fail=pins, max_solves=1_500)
+        return lead(scene, toughness, programme, no_fail=pins, max_solves=max_solves)
 
 
 def reference(degrees: float) -> tuple[float, float, float]:
@@ -163,7 +163,7 @@ def bond(specimen: Specimen, n: int) -> Measurement:
 
 
 def _warm() -> None:
-    Specimen().led(1)
+    Specimen().led(1, max_solves=WARM)
 
 
 def _method(degrees: float, surface: Surface = "volume", **ladder: tuple[int, ...]) -> Method:

@@ -28,7 +28,7 @@ import numpy as np
 
 from cmverify.case import Case, Check, Curve, Level, LinePlot, Measurement, Method, OrderBand
 
-from .running import DESCRIPTIONS, Led, lead, unmirrored
+from .running import DESCRIPTIONS, WARM, Led, lead, unmirrored
 
 if TYPE_CHECKING:
     from solver import Scene
@@ -75,8 +75,8 @@ class Plate:
         )  # fmt: skip
         return scene, [inclusion, top]
 
-    def led(self, n: int) -> Led:
-        """The run until the body has parted."""
+    def led(self, n: int, max_solves: int = 1_500) -> Led:
+        """The run until the body has parted (coarser than a/60: to ū, where it nearly has)."""
         from solver import Programme, Toughness
 
         scene, whole = self.scene(n)
@@ -84,14 +84,14 @@ class Plate:
             scene,
             Toughness(self.toughness),
             Programme(
-                stop=1.5,
+                stop=1.5 if n >= 60 else 1.0,
                 increment=STEP if n >= 60 else 10 * STEP,
                 overload=self.overload,
                 least_force=0.02,
             ),
             no_fail=whole,
             batch=10**9 if self.everything else None,
-            max_solves=1_500,
+            max_solves=max_solves,
         )
 
 
@@ -164,7 +164,7 @@ def bond(plate: Plate, n: int) -> Measurement:
 
 
 def _warm() -> None:
-    Plate(m=3).led(18)
+    Plate(m=3).led(18, max_solves=WARM)
 
 
 def _method(name: str, plate: Plate, **ladder: tuple[int, ...]) -> Method:
