@@ -1,7 +1,9 @@
 """Shapes: which points belong to a body, and how far they are from its edge.
 
 Membership and distance of discs are exact (a polygon would miscount particles); polygons go
-through shapely. Shapes combine by subtraction, which is what holes and notches are.
+through shapely. Shapes combine: ``a - b`` has holes and notches, ``a | b`` is both, ``a & b`` what
+they have in common. Where shapes meet along an edge they are one body, rounding or not; where they
+meet in a point they are two.
 
 Who owns the edge: **a point on the edge of a shape belongs to the shape that was drawn**, discs and
 polygons alike, within rounding. So a body has the particles on its outer edge; those on the rim of
@@ -31,6 +33,10 @@ Point = tuple[float, float]
 _EDGE = 1e-9
 # and those nearer than so many roundings of its coordinates.
 _ROUNDINGS = 4 * np.finfo(np.float64).eps
+# Share of that by which a point may lie off the line between its neighbours and be no corner.
+_STRAIGHT = 1e-3
+# Chords of curves, as a share of the size, from which the edge of a union is measured.
+_FINE = 1.0 / 4096.0
 
 
 class Region(ABC):
@@ -82,6 +88,14 @@ class Region(ABC):
     def __sub__(self, hole: Region) -> Region:
         """This region without `hole`."""
         return Difference(self, hole)
+
+    def __or__(self, other: Region) -> Region:
+        """This region and `other` in one."""
+        return Union(self, other)
+
+    def __and__(self, other: Region) -> Region:
+        """What this region and `other` have in common."""
+        return Intersection(self, other)
 
 
 def _moved(points: Sequence[Point], by: Point, grid: float) -> tuple[Point, ...]:
@@ -250,6 +264,101 @@ class Difference(Region):
 
     def edge_distance(self, x: Array, y: Array) -> Array:
         return np.minimum(self.body.edge_distance(x, y), self.hole.edge_distance(x, y))
+
+
+@dataclass(frozen=True)
+class _Pair(Region):
+    """Two regions in one rule."""
+
+    one: Region
+    other: Region
+
+    def __post_init__(self) -> None:
+        for region in (self.one, self.other):
+            if not isinstance(region, Region):
+                raise TypeError(f"a region combines with a Region, not {type(region).__name__}")
+
+    def moved(self, by: Point, grid: float = 0.0) -> _Pair:
+        return type(self)(self.one.moved(by, grid), self.other.moved(by, grid))
+
+    def loosened(self) -> _Pair:
+        return type(self)(self.one.loosened(), self.other.loosened())
+
+    @property
+    def _same(self) -> float:
+        """Lengths (m) that rounding may make of nothing."""
+        box = np.array([self.one.bounds, self.other.bounds])
+        size = float(np.ptp(box.reshape(-1, 2), axis=0).max())
+        return max(_EDGE * size, _ROUNDINGS * float(np.abs(box).max()))
+
+
+@dataclass(frozen=True)
+class Union(_Pair):
+    """`one` and `other` together: what either of them holds.
+
+    The edge is that of the whole: what lies inside the other is none.
+    """
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        (a, b, c, d), (e, f, g, h) = self.one.bounds, self.other.bounds
+        return min(a, e), min(b, f), max(c, g), max(d, h)
+
+    def contains(self, x: Array, y: Array) -> NDArray[np.bool_]:
+        return self.one.contains(x, y) | self.other.contains(x, y)
+
+    def outline(self, step: float) -> shapely.Geometry:
+        one, other = self.one.outline(step), self.other.outline(step)
+        # Edges that coincide but for rounding would leave a slit: corners of each take the place of
+        # those of the other that they lie on.
+        other = shapely.snap(other, one, self._same)
+        one = shapely.snap(one, other, self._same)
+        # Where two edges go on in one line no corner is left.
+        return shapely.simplify(shapely.union(one, other), _STRAIGHT * self._same)
+
+    def edge_distance(self, x: Array, y: Array) -> Array:
+        x0, y0, x1, y1 = self.bounds
+        size = max(x1 - x0, y1 - y0)
+        edge = shapely.boundary(self.outline(_FINE * size))
+        shapely.prepare(edge)
+        found = np.asarray(shapely.distance(edge, shapely.points(x, y)))
+        # Chords stand for curves: what is an edge of either shape is known exactly.
+        for region in (self.one, self.other):
+            exact = region.edge_distance(x, y)
+            found = np.where(np.abs(found - exact) < _FINE**2 * size, exact, found)
+        return found
+
+
+@dataclass(frozen=True)
+class Intersection(_Pair):
+    """What `one` and `other` have in common.
+
+    Raises
+    ------
+    ValueError
+        If that is nothing.
+    """
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        x0, y0, x1, y1 = self.bounds
+        if not (x0 < x1 and y0 < y1):
+            raise ValueError("two regions that lie apart have nothing in common")
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        (a, b, c, d), (e, f, g, h) = self.one.bounds, self.other.bounds
+        return max(a, e), max(b, f), min(c, g), min(d, h)
+
+    def contains(self, x: Array, y: Array) -> NDArray[np.bool_]:
+        return self.one.contains(x, y) & self.other.contains(x, y)
+
+    def outline(self, step: float) -> shapely.Geometry:
+        return shapely.intersection(self.one.outline(step), self.other.outline(step))
+
+    def edge_distance(self, x: Array, y: Array) -> Array:
+        # A part of one outline beyond the other is never the nearer one.
+        return np.minimum(self.one.edge_distance(x, y), self.other.edge_distance(x, y))
 
 
 def disc(radius: float, centre: Point = (0.0, 0.0)) -> Disc:

@@ -6,10 +6,10 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from solver import Crack, disc, polygon, rectangle
-from solver.geometry import Lattice
+from solver import Crack, Family, disc, polygon, rectangle
+from solver.geometry import Body, Lattice, Outline
 from solver.geometry.regions import Difference
-from tests.solver.bodies import exact
+from tests.solver.bodies import exact, few
 
 coordinate = st.floats(-0.9, 0.9)
 
@@ -127,3 +127,81 @@ def test_crack_pieces():
 def test_bad_cracks(points, message):
     with pytest.raises(ValueError, match=message):
         Crack(*points)
+
+
+def same_body(one, other, spacing=0.055):
+    """Particles, bonds and outline of two regions are alike."""
+    first, second = (Lattice(region, spacing, 3) for region in (one, other))
+    np.testing.assert_allclose(first.points, second.points, atol=1e-12)
+    offsets = Family(2, spacing).offsets
+    for a, b in zip(*(Body.of(x).leaving(x, offsets) for x in (first, second)), strict=True):
+        np.testing.assert_array_equal(a, b)
+    nodes = (Outline.of(region, (), spacing).nodes for region in (one, other))
+    a, b = (found[np.lexsort(np.rint(found / spacing * 1e6).T)] for found in nodes)
+    np.testing.assert_allclose(a, b, atol=1e-11)
+
+
+@few
+@given(st.floats(-1.2, 1.2), st.floats(-0.3, 0.3), st.floats(0, 3), st.booleans())
+def test_the_pieces_of_a_body_are_the_body_again(turn, place, angle, overlapping):
+    """Whatever the line along which it is cut, also where the pieces overlap."""
+    c, s = np.cos(angle), np.sin(angle)
+    knife = rectangle(4, 4, (c * (2 + place), s * (2 + place)), angle)
+    body = rectangle(1.3, 0.9, (0.0, 0.0), turn) - disc(0.17, (0.1, 0.05))
+    rest = body if overlapping else body - knife
+    same_body((body & knife) | rest, body)
+    same_body(rest | (body & knife), body)
+
+
+def test_edges_that_rounding_parts_are_one():
+    pieces = [rectangle(0.1, 1.0, (0.1 * k + 0.05, 0.0)) for k in range(7)]
+    united = pieces[0]
+    for piece in pieces[1:]:
+        united = united | piece
+    # 0.1 k ± 0.05 differ by roundings from piece to piece.
+    assert shapely.get_num_geometries(united.outline(0.1)) == 1
+    same_body(united, rectangle(0.7, 1.0, (0.35, 0.0)))
+
+
+def test_membership_and_bounds_of_unions_and_intersections():
+    one, other = disc(1.0), rectangle(1.0, 3.0, (0.6, 0.2))
+    x, y = np.random.default_rng(1).uniform(-2, 2, (2, 400))
+    a, b = one.contains(x, y), other.contains(x, y)
+    np.testing.assert_array_equal((one | other).contains(x, y), a | b)
+    np.testing.assert_array_equal((one & other).contains(x, y), a & b)
+    np.testing.assert_allclose((one | other).bounds, (-1.0, -1.3, 1.1, 1.7))
+    np.testing.assert_allclose((one & other).bounds, (0.1, -1.0, 1.0, 1.0))
+    far = (one | other).moved((3.0, 4.0))
+    np.testing.assert_array_equal(far.contains(x + 3.0, y + 4.0), a | b)
+    with pytest.raises(ValueError, match="nothing in common"):
+        _ = one & disc(1.0, (3.0, 0.0))
+    with pytest.raises(TypeError, match="combines with a Region"):
+        _ = one | 3.0
+
+
+def test_the_edge_of_a_union_is_that_of_the_whole():
+    both = disc(1.0) | disc(1.0, (1.0, 0.0))
+    x, y = np.array([0.5, -0.5, 0.5]), np.array([0.0, 0.0, 0.7])
+    corner = np.sqrt(0.75)
+    np.testing.assert_allclose(both.edge_distance(x, y), [corner, 0.5, corner - 0.7], atol=1e-7)
+    # Exact but for the corner.
+    assert both.edge_distance(x, y)[1] == 0.5
+    lens = disc(1.0) & disc(1.0, (1.0, 0.0))
+    np.testing.assert_allclose(lens.edge_distance(x[:1], y[:1]), 0.5)
+
+
+def test_bodies_that_meet_in_a_point_are_two():
+    corner = rectangle(1, 1, (-0.5, -0.5)) | rectangle(1, 1, (0.5, 0.5))
+    lattice = Lattice(corner, 0.1, 3)
+    offsets = Family(2, 0.1).offsets
+    particles, mask = Body.of(lattice).leaving(lattice, offsets)
+    number = np.full(lattice.count, -1)
+    number[particles] = np.arange(len(particles))
+    rows, columns = lattice.rows_columns
+    there = lattice.number()
+    left = lattice.points[:, 0] < 0
+    for p in np.nonzero(left)[0]:
+        for o, (dx, dy) in enumerate(offsets):
+            q = there[rows[p] + dy, columns[p] + dx]
+            if q >= 0 and not left[q]:
+                assert mask[o, number[p]]
