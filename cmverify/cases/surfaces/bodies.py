@@ -181,19 +181,21 @@ def converging(
     least: float = 1.5,
     most: float = 2.6,
     floor: float = 1e-11,
+    since: int = 0,
 ) -> Check:
     """The check of the extrapolated treatment: bounds, and an order fitted to the whole ladder.
 
     Bounds are what was measured with room for half as much again. The order asked for is 1.5,
-    between the first order of an edge untreated and the second of the bulk; `least` is less where
-    an oblique edge cuts the cells differently at every spacing, so that errors scatter about
-    their trend. Below `floor` an error counts as none.
+    between the first order of an edge untreated and the second of the bulk (`homogeneous` says
+    why); `least` is less where an oblique edge cuts the cells differently at every spacing, so that
+    errors scatter about their trend. Spacings before `since` are left out of it. Below `floor` an
+    error counts as none.
     """
     return Check(
         "bond/extrapolated",
         quantity,
         bounds,
-        order=OrderBand(least, most, floor=floor, fitted=True),
+        order=OrderBand(least, most, since, floor, fitted=True),
         source="exact field; measured with half as much again, order by theory",
     )
 
