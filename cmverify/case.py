@@ -166,6 +166,9 @@ class Measurement:
         Whatever else is worth a column: iterations, residual, bonds, method chosen.
     fields, lines, stages
         What the report draws; may be left out.
+    warnings : tuple of str
+        What the solver said of the scenes that it was asked, each sentence once. The harness
+        listens (`cmverify.run.worker`): no method needs to hand them on.
     """
 
     unknowns: int
@@ -175,6 +178,7 @@ class Measurement:
     fields: FieldSet | None = None
     lines: tuple[LinePlot, ...] = ()
     stages: Stages | None = None
+    warnings: tuple[str, ...] = ()
 
     @property
     def total_seconds(self) -> float:

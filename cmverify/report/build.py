@@ -115,9 +115,19 @@ def _section(result: CaseResult, pictures: list[Picture], downloads: list[str]) 
         "tightest": result.tightest,
         "command": level_command,
         "solvers": _solvers(rows),
+        "warnings": _warnings(rows, case.length),
         "ordered": any(row.orders for row in rows),
         "timed": any(not math.isnan(row.total) and row.total > 0 for row in rows),
     }
+
+
+def _warnings(rows: Sequence[Row], length: str) -> list[tuple[str, list[str]]]:
+    """What the solver said, each sentence once, and of which measurements."""
+    said: dict[str, list[str]] = {}
+    for row in rows:
+        for sentence in row.warnings:
+            said.setdefault(sentence, []).append(f"{row.method}, {length}/{row.resolution}")
+    return list(said.items())
 
 
 def _solvers(rows: Sequence[Row]) -> str:

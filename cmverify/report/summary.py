@@ -134,6 +134,7 @@ class Row:
     total: float
     statistics: dict[str, Any]
     failure: Failed | None = None
+    warnings: tuple[str, ...] = ()
 
 
 #: Errors below this are rounding: no order is printed for them.
@@ -156,6 +157,7 @@ def table(result: CaseResult) -> list[Row]:
                 Row(
                     name, kind, n, outcome.unknowns, dict(outcome.quantities), orders,
                     dict(outcome.seconds), outcome.total_seconds, dict(outcome.statistics),
+                    warnings=outcome.warnings,
                 )
             )  # fmt: skip
             coarser = (n, outcome)

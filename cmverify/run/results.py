@@ -216,6 +216,7 @@ def _describe(m: Measurement, arrays: dict[str, np.ndarray]) -> dict[str, Any]:
         "quantities": dict(m.quantities),
         "seconds": dict(m.seconds),
         "statistics": dict(m.statistics),
+        "warnings": list(m.warnings),
     }
     if m.fields is not None:
         arrays["points"] = m.fields.points
@@ -281,4 +282,5 @@ def _restore(data: dict[str, Any], arrays: dict[str, Any]) -> Measurement:
         fields=fields,
         lines=tuple(lines),
         stages=stages,
+        warnings=tuple(data.get("warnings", ())),
     )

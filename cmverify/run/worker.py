@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import logging
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from multiprocessing.connection import Connection
 from pathlib import Path
 from weakref import WeakSet
@@ -26,10 +29,36 @@ def warm_up(method: Method) -> None:
 def measure(method: Method, resolution: int) -> Measurement:
     """Run a method with its compiled code warm; raises what the method raises."""
     warm_up(method)
-    measurement = method.run(resolution)
+    with cautions() as said:
+        measurement = method.run(resolution)
     if not isinstance(measurement, Measurement):
         raise TypeError(f"{method.name} returned {type(measurement).__name__}, not a Measurement")
-    return measurement
+    return replace(measurement, warnings=tuple(dict.fromkeys((*measurement.warnings, *said))))
+
+
+class _Listener(logging.Handler):
+    """Keeps what it hears."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.INFO)
+        self.heard: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.heard.append(record.getMessage())
+
+
+@contextmanager
+def cautions() -> Iterator[list[str]]:
+    """What the solver says of the scenes that it is asked within the block."""
+    logger, listener = logging.getLogger("solver"), _Listener()
+    level = logger.level
+    logger.addHandler(listener)
+    logger.setLevel(logging.INFO)
+    try:
+        yield listener.heard
+    finally:
+        logger.setLevel(level)
+        logger.removeHandler(listener)
 
 
 def attempt(method: Method, resolution: int) -> Outcome:

@@ -99,6 +99,11 @@ class Modes(Result):
             return np.full(self.unknowns.shape[::2], np.nan)
         return self.unknowns[:, 2] / self.scene.spacing
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the answer leaves out or settles by a rule, one sentence each."""
+        return self.discretisation.warnings
+
     def fields(self) -> dict[str, Array]:
         """Every mode's displacement (N, 2) and rotation (N,), by name."""
         named: dict[str, Array] = {}
@@ -116,7 +121,7 @@ class Modes(Result):
             "residuals": self.residuals.tolist(),
             "mass": float(self.mass.sum()),
             **self.statistics,
-            "warnings": self.discretisation.warnings,
+            "warnings": self.warnings,
         }
 
 

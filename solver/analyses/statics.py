@@ -12,7 +12,7 @@ from ..arrays import Array
 from ..blas import one_thread
 from ..errors import ConvergenceError
 from ..linear import Bordered, Task, method
-from ..problem import Description, Discretisation
+from ..problem import Description, Discretisation, cautions
 from ..problem.bordering import border as border_of
 from ..solution import Solution, Statistics
 from .registry import Analysis
@@ -82,10 +82,11 @@ def solve(
     found = discretisation.field(x[: operator.shape[0]])
     warnings = discretisation.warnings + discretisation.overlaps(found)
     if tolerance < residual <= method.attainable(operator, x, rhs):
-        warnings += (
+        stopped = (
             f"the residual stopped at {residual:.1e}, where {tolerance:.1e} was asked for: in a "
-            f"body so slender (or so loosely held) rounding of the displacements allows no less",
+            f"body so slender (or so loosely held) rounding of the displacements allows no less"
         )
+        warnings += cautions.told((stopped,))
     elif not residual <= tolerance:
         raise ConvergenceError(
             f"{used} stopped at a relative residual of {residual:.2e} after {iterations} "

@@ -69,6 +69,8 @@ class Growth(Result):
             )
         start = scene.discretise(sharp_tips=False, constrained=True)
         self.scene, self.programme, self.reason = scene, programme, ""
+        #: Warnings about the scene; `warnings` adds what the run has come to.
+        self.cautions = start.warnings
         self.bonds = Breakable(start, toughness, no_fail, tension_only, criterion)
         self.batch = _batch_size(batch, start.family.offsets)
         self.body = Equilibrium(start, self.bonds, tolerance, max_iterations)
@@ -221,7 +223,13 @@ class Growth(Result):
             "solves": len(steps),
             "iterations": int(steps["iterations"].sum()),
             "bonds a solve": len(self.broken_bonds) / len(steps),
+            "warnings": self.warnings,
         }
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the run leaves out or settles by a rule, one sentence each."""
+        return self.solution.statistics.warnings
 
     # ---- what happens ---------------------------------------------------------------------
 

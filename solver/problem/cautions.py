@@ -1,10 +1,13 @@
 """What a scene asks that the model answers less well than it seems: sentences for its result.
 
-Nothing here changes a solution. Each sentence says what is meant, where, and by how much.
+Nothing here changes a solution. Each sentence says what is meant, where, and by how much. Results
+carry them (`warnings`); the logger ``solver`` is told too, at level INFO, for who runs many scenes
+and keeps no result.
 """
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 
 import numpy as np
@@ -25,6 +28,15 @@ _AREA = 0.01
 _OVERLAP, _STRAINED = 0.02, 0.05
 # What thin members come to (m = 5, two cells thick, measured in bending).
 _THIN: dict[str, str] = {"extrapolated": "-17 %", "volume": "+25 %", "none": "+156 %"}
+
+_LOGGER = logging.getLogger("solver")
+
+
+def told(sentences: tuple[str, ...]) -> tuple[str, ...]:
+    """The same sentences, told to whoever listens."""
+    for sentence in sentences:
+        _LOGGER.info("%s", sentence)
+    return sentences
 
 
 def left_over(lattice: Lattice, surface: Surface) -> tuple[str, ...]:

@@ -209,11 +209,13 @@ class Discretisation:
         scene, lattice = self.scene, self.lattice
         translations = ~np.array(scene.physics.turning[: len(self.prescribed)])
         given = (self.prescribed & ~np.isnan(self.values))[translations].any(axis=0)
-        return (
-            *self.bonds.warnings,
-            *cautions.left_over(lattice, scene.surface),
-            *cautions.thin_layers(lattice, given, scene.m),
-            *cautions.thin_members(lattice, scene.m, scene.surface),
+        return cautions.told(
+            (
+                *self.bonds.warnings,
+                *cautions.left_over(lattice, scene.surface),
+                *cautions.thin_layers(lattice, given, scene.m),
+                *cautions.thin_members(lattice, scene.m, scene.surface),
+            )
         )
 
     def overlaps(self, unknowns: Array) -> tuple[str, ...]:
@@ -221,7 +223,7 @@ class Discretisation:
         if not (self.scene.physics.breakable and self.scene.cracks):
             return ()
         cracks = _moved(self.scene.cracks, self.lattice)
-        return cautions.overlaps(self.bonds, cracks, unknowns[:2])
+        return cautions.told(cautions.overlaps(self.bonds, cracks, unknowns[:2]))
 
     @property
     def damaged(self) -> bool:

@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -69,6 +70,19 @@ def test_json_has_every_number_and_no_nan(tmp_path):
     assert case["measurements"][0]["quantities"]["integral"] > 0
     assert case["measurements"][1]["failure"]["message"] == "m"
     assert len(case["work_precision"]) == 1
+
+
+def test_what_the_solver_said_is_on_the_page_and_in_the_numbers(tmp_path):
+    said = replace(trapezium(10), warnings=("thin <members>", "a layer"))
+    more = replace(trapezium(20), warnings=("thin <members>",))
+    page = report(tmp_path, {10: said, 20: more})
+    assert "says of these scenes (2)" in page
+    assert page.count("thin &lt;members&gt;") == 1
+    assert "bond/trapezium, a/10, bond/trapezium, a/20" in page
+    assert "says of these scenes" not in report(tmp_path, {10: trapezium(10)})
+    judged = summary.summarise([toy()], records({10: said}))
+    (row,) = json.loads(summary.as_json(judged, INFO))["cases"]["toy"]["measurements"]
+    assert row["warnings"] == list(said.warnings)
 
 
 def test_run_information_round_trips(tmp_path):

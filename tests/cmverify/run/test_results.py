@@ -4,6 +4,7 @@ import importlib.util
 import json
 import math
 import random
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -24,6 +25,8 @@ def test_a_measurement_comes_back_as_it_was(tmp_path):
     assert after.quantities == before.quantities
     assert after.seconds == before.seconds
     assert after.statistics == before.statistics
+    told = replace(before, warnings=("a member is thin",))
+    assert results.load(results.save(record(told), tmp_path)).outcome.warnings == told.warnings
     np.testing.assert_array_equal(after.fields.points, before.fields.points)
     item, original = after.fields.items["f"], before.fields.items["f"]
     np.testing.assert_array_equal(item.difference, original.difference)

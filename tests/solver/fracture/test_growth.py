@@ -47,3 +47,8 @@ def test_the_solution_is_the_last_equilibrium(run):
     unit = run.body.unknowns[:2].T
     np.testing.assert_allclose(run.solution.displacement, run.load_factor * unit, atol=1e-14)
     assert not run.loose.any()
+
+
+def test_a_run_says_what_it_cannot_answer_well(run):
+    assert run.summary()["warnings"] == run.warnings
+    assert set(run.cautions) <= set(run.warnings)

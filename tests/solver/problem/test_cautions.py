@@ -80,6 +80,13 @@ def test_faces_that_overlap_say_by_how_much(surface, end):
     assert 0.6 * jump < amount < jump
 
 
+def test_who_keeps_no_result_may_listen(caplog):
+    with caplog.at_level("INFO", logger="solver"):
+        said = warnings(rectangle(1.02, 1.0), surface="volume")
+        assert said
+        assert [r.getMessage() for r in caplog.records] == list(said)
+
+
 def test_conduction_has_no_faces_to_overlap():
     held = Support.where(lambda x, y: y < -0.25, temperature=0.0)
     crack = Crack((-0.2, 0.02), (0.23, 0.02))
