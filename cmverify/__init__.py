@@ -41,6 +41,7 @@ __all__ = [
     "Load",
     "MechanismError",
     "NegativeCurvatureError",
+    "PolarTensor",
     "Programme",
     "Region",
     "Scene",

@@ -25,6 +25,7 @@ from .material import (
     Family,
     Fourfold,
     Influence,
+    PolarTensor,
     TwoHarmonic,
     UniformShear,
 )
@@ -49,6 +50,7 @@ __all__ = [
     "Load",
     "MechanismError",
     "NegativeCurvatureError",
+    "PolarTensor",
     "Programme",
     "Region",
     "Scene",

@@ -113,6 +113,10 @@ class Discretisation(Table):
 
 class _Massive(Table):
     density: Positive | None = Field(default=None, description="Mass per volume, kg/m³")
+    bending: Matrix2 | None = Field(
+        default=None,
+        description="Of a polar solid: [[E3131, E3132], [E3132, E3232]], N, before it is turned",
+    )
 
 
 class _Turned(_Massive):

@@ -255,7 +255,12 @@ def _region(table: Any) -> Region:
 
 
 def _material(table: Any) -> Any:
-    from solver import ConductivityTensor, ElasticTensor, ElectricConductivityTensor
+    from solver import (
+        ConductivityTensor,
+        ElasticTensor,
+        ElectricConductivityTensor,
+        PolarTensor,
+    )
 
     if table.kind == "conductivity":
         material: Any = ConductivityTensor(table.tensor)
@@ -267,9 +272,11 @@ def _material(table: Any) -> Any:
     elif table.kind == "elastic":
         material = ElasticTensor(table.voigt)
     else:
-        own = ("kind", "angle_degrees", "density")
+        own = ("kind", "angle_degrees", "density", "bending")
         values = {k: v for k, v in table if k not in own and v is not None}
         material = getattr(ElasticTensor, table.kind)(**values)
+    if (bending := getattr(table, "bending", None)) is not None:
+        material = PolarTensor(material, bending)
     angle = getattr(table, "angle_degrees", 0.0)
     return material.rotated(np.radians(angle)) if angle else material
 

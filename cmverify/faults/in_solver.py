@@ -192,7 +192,7 @@ FAULTS = (
     ),
     Fault(
         "conductivity turned the other way",
-        f"{M}.tensors.ConductivityTensor.rotated",
+        f"{M}.tensors.GradientTensor.rotated",
         argument(1, times(-1.0)),
         "tensors",
     ),
@@ -211,7 +211,7 @@ FAULTS = (
     ),
     Fault(
         "principal conductivities swapped",
-        f"{M}.tensors.ConductivityTensor.principal",
+        f"{M}.tensors.GradientTensor.principal",
         result(lambda found: (found[1], found[0], found[2])),
         "tensors",
     ),

@@ -11,6 +11,7 @@
 `compact_tension`      stress intensity factor of ASTM E399
 `tetrachiral`          effective tensor of the block lattice
 `christoffel`          plane wave speeds
+`cosserat`             size effects of polar strips, shear waves of polar solids
 =====================  ======================================================================
 """
 
@@ -18,6 +19,7 @@ from references.analytic import (
     christoffel,
     compact_tension,
     conduction,
+    cosserat,
     elasticity,
     hole,
     kinking,
@@ -31,6 +33,7 @@ __all__ = [
     "christoffel",
     "compact_tension",
     "conduction",
+    "cosserat",
     "elasticity",
     "hole",
     "kinking",

@@ -26,6 +26,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..blas import one_thread
 from ..errors import SceneError
+from ..material import PolarTensor
 from ..problem import Description, Discretisation, Forcing
 from ..problem.conditions import Value
 from ..result import Result, Table
@@ -262,6 +263,11 @@ def _checked(
         raise SceneError(f"scheme must be 'verlet' or 'newmark', not {scheme!r}")
     if rotations not in ("condensed", "inertia"):
         raise SceneError(f"rotations must be 'condensed' or 'inertia', not {rotations!r}")
+    if rotations == "inertia" and isinstance(scene.material, PolarTensor):
+        raise SceneError(
+            "rotations of a polar solid have an inertia of the solid's own, which this model does "
+            "not know: they carry none (rotations='condensed')"
+        )
     if rotations == "inertia" and scheme == "newmark":
         raise SceneError("an implicit step needs no inertia of rotations: leave rotations out")
     if step is not None and not 0 < step < np.inf:

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array, Indices, Mask
 from ..errors import SceneError
 from ..geometry import Where, select
-from ..material import ElasticModuli, Family
+from ..material import ElasticModuli, Family, PolarModuli
 from ..material.strains import elongations
 from ..operators import segments
 from ..problem import Discretisation
@@ -83,7 +83,8 @@ class Breakable:
     tension_only : bool
         Bonds that are shortened (s < 0) do not break.
     criterion : {"total", "axial"}
-        ``total``: w as stored. ``axial``: its part ½ |ξ| k_n s² only.
+        ``total``: w as stored (Eq. 4): w_s + w_γ, and w_χ of the bending of a polar bond.
+        ``axial``: its part ½ |ξ| k_n s² only.
 
     Raises
     ------
@@ -123,16 +124,22 @@ class Breakable:
         self.pair = family.weight[:half] * family.cell_area**2
         axial = 0.5 * moduli.normal[:half] / family.length[:half]
         shear = 0.5 * moduli.shear[:half] / family.length[:half]
-        geometry = np.column_stack(
-            [family.normal[:half], 0.5 * family.length[:half] / family.spacing, axial, shear]
-        )
+        arm = 0.5 * family.length[:half] / family.spacing
+        terms = [family.normal[:half], arm, axial, shear]
+        #: Whether bonds store energy of bending, too.
+        self.polar = isinstance(moduli, PolarModuli)
+        if isinstance(moduli, PolarModuli):
+            # The kernels know rotations as θ Δx.
+            bending = 0.5 * moduli.bending[:half] / family.length[:half]
+            terms.append(bending / family.spacing**2)
+        geometry = np.column_stack(terms)
         stored = geometry.copy()
         stored[:, 3:] *= self.pair[:, None]
         self._stored = stored
         load = geometry.copy()
         load[:, 3:] /= self.critical[:, None]
         if criterion == "axial":
-            load[:, 4] = 0.0
+            load[:, 4:] = 0.0
         self._load = load
         row = lattice.shape[1]
         dx, dy = family.offsets[:half].T
@@ -195,7 +202,8 @@ class Breakable:
             Overwritten by the next call.
         """
         grid = self._grid(0, unknowns)
-        bond_kernels.bond_energies(
+        energies = bond_kernels.polar_energies if self.polar else bond_kernels.bond_energies
+        energies(
             grid,
             self._segments,
             self._steps,
@@ -215,20 +223,20 @@ class Breakable:
         grid = self._grid(0, unknowns)
         other = grid if others is None else self._grid(1, others)
         out = np.empty(len(self._segments))
-        bond_kernels.bond_work(
-            grid, other, self._segments, self._steps, self._stored, self.strengths, out
-        )
+        work = bond_kernels.polar_work if self.polar else bond_kernels.bond_work
+        work(grid, other, self._segments, self._steps, self._stored, self.strengths, out)
         return float(out.sum())
 
     def energy_of(self, unknowns: Array, bonds: Indices) -> Array:
         """Energy that single bonds hold, J per unit thickness; `bonds` are flat indices."""
         o, p, q = self.ends(bonds)
-        nx, ny, half, a, b = self._stored[o].T
+        nx, ny, half, *stored = self._stored[o].T
         field = np.zeros((3, self.lattice.count))
         field[: len(unknowns)] = np.nan_to_num(unknowns)
         turn = half * (field[2, q] + field[2, p])
-        s, gamma = elongations(("s", "γ"), np.stack([nx, ny]), field[:, q] - field[:, p], turn)
-        return self.strengths.ravel()[bonds] * (a * s**2 + b * gamma**2)
+        strains = ("s", "γ", "χ") if self.polar else ("s", "γ")
+        found = elongations(strains, np.stack([nx, ny]), field[:, q] - field[:, p], turn)
+        return self.strengths.ravel()[bonds] * np.einsum("ak,ak->k", np.stack(stored), found**2)
 
     def cost_of(self, bonds: Indices) -> Array:
         """Energy that breaking these bonds takes, w_c α Λ Δv_p Δv_q."""
@@ -313,6 +321,12 @@ def _refuse_negative(moduli: ElasticModuli, criterion: Criterion) -> None:
             "some bonds of this material have a negative axial stiffness k_n: stretching them "
             "sets energy free, so that no energy criterion says when they break. Use "
             "calibration='positive' or another m"
+        )
+    if criterion == "total" and isinstance(moduli, PolarModuli) and moduli.bending.min() < 0:
+        raise SceneError(
+            "some bonds of this material have a negative bending stiffness k_b: bending them sets "
+            "energy free, so that w ≥ w_c does not say when they break. Use "
+            "calibration='positive', or criterion='axial' (the energy of the stretch alone)"
         )
     if criterion == "total" and moduli.shear.min() < 0:
         raise SceneError(

@@ -11,6 +11,7 @@ from .moduli import (
     ElasticModuli,
     ElectricModuli,
     Moduli,
+    PolarModuli,
     bond_weights,
     effective_tensor,
     stretch_rows,
@@ -18,11 +19,13 @@ from .moduli import (
 from .stability import Stability, assess
 from .symbol import acoustic_tensor, brillouin_zone, condensed_symbol, margins
 from .tensors import (
+    BendingTensor,
     ConductivityTensor,
     ElasticTensor,
     ElectricConductivityTensor,
     Material,
     Plane,
+    PolarTensor,
     stress_rotation,
 )
 
@@ -30,6 +33,7 @@ __all__ = [
     "CONSTANT",
     "AngularLaw",
     "AreaRule",
+    "BendingTensor",
     "Calibration",
     "ConductiveModuli",
     "ConductivityTensor",
@@ -45,6 +49,8 @@ __all__ = [
     "Material",
     "Moduli",
     "Plane",
+    "PolarModuli",
+    "PolarTensor",
     "Stability",
     "TwoHarmonic",
     "UniformShear",

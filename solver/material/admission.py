@@ -133,6 +133,7 @@ def _instead_of(family: Family, moduli: Moduli) -> str:
         material = moduli.tensor(tensor)
     except ValueError:
         return "The lattice sums make no positive-definite tensor: use calibration='lattice'."
+    assert isinstance(material, Material)
     return remedy(family, material)
 
 

@@ -6,7 +6,8 @@ so the energy per volume of a bulk particle makes the lattice an elastic solid o
 
     C = ½ Σ α Λ |ξ| Δv (k_n v_s v_sᵀ + k_t v_γ v_γᵀ),        D = ½ Σ α Λ Δv k n nᵀ
 
-(conduction has no |ξ|, Eq. 112). Three calibrations choose the moduli:
+(conduction has no |ξ|, Eq. 112). A polar solid's bending stiffness E = ½ Σ α Λ |ξ| Δv k_b n nᵀ
+has the same law as a conductivity (Eqs. 179–181). Three calibrations choose the moduli:
 
 ``continuum``
     The paper's: the sum replaced by the integral over the horizon disc (Eqs. 58–70, 149–155,
@@ -37,13 +38,21 @@ from .moduli import (
     ElasticModuli,
     ElectricModuli,
     Moduli,
+    PolarModuli,
     bond_weights,
     conductive_moments,
     elastic_moments,
     stretch_rows,
 )
 from .positive import closest, feasible
-from .tensors import ConductivityTensor, ElasticTensor, ElectricConductivityTensor, Material
+from .tensors import (
+    ConductivityTensor,
+    ElasticTensor,
+    ElectricConductivityTensor,
+    GradientTensor,
+    Material,
+    PolarTensor,
+)
 
 Calibration = Literal["continuum", "lattice", "positive"]
 
@@ -111,9 +120,26 @@ def _(
 
 @_calibrated.register
 def _(
+    material: PolarTensor, family: Family, calibration: Calibration, law: AngularLaw | None
+) -> Moduli:
+    plain = _calibrated(ElasticTensor(material.voigt), family, calibration, law)
+    assert isinstance(plain, ElasticModuli)
+    bending = _conductive(family, material.bending, calibration, _of_gradients(law))
+    return PolarModuli(plain.normal, plain.shear, bending)
+
+
+def _of_gradients(law: AngularLaw | None) -> AngularLaw:
+    """The law of k_b beside that of k_n and k_t: the same cosine, or the paper's (Eq. 179)."""
+    return law if isinstance(law, Cosine) else Cosine()
+
+
+@_calibrated.register
+def _(
     material: ConductivityTensor, family: Family, calibration: Calibration, law: AngularLaw | None
 ) -> Moduli:
-    return _conductive(family, material, calibration, Cosine() if law is None else law)
+    return ConductiveModuli(
+        _conductive(family, material, calibration, Cosine() if law is None else law)
+    )
 
 
 @_calibrated.register
@@ -123,8 +149,9 @@ def _(
     calibration: Calibration,
     law: AngularLaw | None,
 ) -> Moduli:
-    heat = _conductive(family, material, calibration, Cosine() if law is None else law)
-    return ElectricModuli(heat.conductivity)
+    return ElectricModuli(
+        _conductive(family, material, calibration, Cosine() if law is None else law)
+    )
 
 
 def _solve(system: Array, target: Array, what: str) -> Array:
@@ -205,14 +232,14 @@ def _positive_elastic(
     return np.tile(found[:half], 2), np.tile(found[half:], 2)
 
 
-def _positive_system(family: Family, material: Material) -> tuple[Array, Array]:
+def _positive_system(family: Family, material: Material | GradientTensor) -> tuple[Array, Array]:
     """Moment rows over half the family (opposite bonds are equal) and their targets."""
     half = family.size // 2
     return _rows(material, family.angle[:half], 2 * bond_weights(family, material)[:half])
 
 
 @singledispatch
-def _rows(material: Material, psi: Array, weight: Array) -> tuple[Array, Array]:
+def _rows(material: Material | GradientTensor, psi: Array, weight: Array) -> tuple[Array, Array]:
     """Moment rows of bonds at angles ψ with some weights, and the material's moments."""
     raise TypeError(f"no moments are known of a {type(material).__name__}")
 
@@ -228,7 +255,7 @@ def _(material: ElasticTensor, psi: Array, weight: Array) -> tuple[Array, Array]
 
 
 @_rows.register
-def _(material: ConductivityTensor, psi: Array, weight: Array) -> tuple[Array, Array]:
+def _(material: GradientTensor, psi: Array, weight: Array) -> tuple[Array, Array]:
     return weight * conductive_moments(psi), material.matrix[PAIRS2]
 
 
@@ -252,10 +279,11 @@ def representable_by_directions(material: Material, count: int = 360) -> bool:
 
 def _conductive(
     family: Family,
-    material: ConductivityTensor,
+    material: GradientTensor,
     calibration: Calibration,
     law: AngularLaw,
-) -> ConductiveModuli:
+) -> Array:
+    """k of every bond, shape (n,), or k_b."""
     target = material.matrix[PAIRS2]
     psi = family.angle
     weight = bond_weights(family, material)
@@ -266,7 +294,9 @@ def _conductive(
     else:
         basis = law.conductive(psi, material, extended=False)
         circle = _circle(law)
-        radial = 0.5 * family.horizon**2 * family.influence.moment(1) * 2 * np.pi / len(circle)
+        power = 2 if material.physics.energy_by_length else 1
+        radial = 0.5 * family.horizon ** (power + 1) * family.influence.moment(power)
+        radial *= 2 * np.pi / len(circle)
         on_circle = law.conductive(circle, material, extended=False)
         system = radial * conductive_moments(circle) @ on_circle.T
     conductivity = _solve(system, target, f"{name} law ({calibration})") @ basis
@@ -278,7 +308,7 @@ def _conductive(
         if found is None:
             raise _not_on(family)
         conductivity = np.tile(found * scale, 2)
-    return ConductiveModuli(_mirrored(conductivity))
+    return _mirrored(conductivity)
 
 
 def _not_on(family: Family) -> NotRepresentableError:

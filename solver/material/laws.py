@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import CalibrationError
-from .tensors import ConductivityTensor, ElasticTensor
+from .tensors import ElasticTensor, GradientTensor
 
 
 def _even(n: int) -> int:
@@ -46,7 +46,7 @@ class TwoHarmonic:
         shear = np.array([cs**2, cs**2, -2 * cs**2, c2**2, -2 * cs * c2, 2 * cs * c2])
         return normal, shear
 
-    def conductive(self, psi: Array, material: ConductivityTensor, extended: bool) -> Array:
+    def conductive(self, psi: Array, material: GradientTensor, extended: bool) -> Array:
         """Basis values of k at ψ, shape (3, n): 𝒦_T11, 𝒦_T22, 𝒦_T12."""
         c, s = np.cos(psi), np.sin(psi)
         return np.array([c * c, s * s, 2 * c * s])
@@ -72,7 +72,7 @@ class UniformShear:
         harmonics = [np.cos(2 * psi), np.sin(2 * psi), np.cos(4 * psi), np.sin(4 * psi)]
         return np.array([one, *harmonics, zero]), np.array([zero] * 5 + [one])
 
-    def conductive(self, psi: Array, material: ConductivityTensor, extended: bool) -> Array:
+    def conductive(self, psi: Array, material: GradientTensor, extended: bool) -> Array:
         """Refused: conduction has no shear."""
         raise CalibrationError("the uniform-shear law is one of elasticity; use Cosine")
 
@@ -106,14 +106,14 @@ class Cosine:
         """Highest harmonic of the law."""
         return 2 * (self.n or 512)
 
-    def exponent(self, material: ConductivityTensor) -> int:
+    def exponent(self, material: GradientTensor) -> int:
         """The exponent used for a conductor: the one given, or the smallest even n ≥ K1/K2 − 1."""
         if self.n is not None:
             return self.n
         high, low, _ = material.principal()
         return max(2, 2 * int(np.ceil((high / low - 1 - 1e-9) / 2)))
 
-    def conductive(self, psi: Array, material: ConductivityTensor, extended: bool) -> Array:
+    def conductive(self, psi: Array, material: GradientTensor, extended: bool) -> Array:
         """Basis values of k at ψ: 1, cosⁿ and, if `extended`, the odd cosⁿ⁻¹ sin.
 
         The odd function is what a lattice needs when ζ is not one of its axes: its sums then
@@ -174,7 +174,7 @@ class Fourfold:
         member = _powers(psi - zeta, self.n, 2)
         return _independent(member, member)
 
-    def conductive(self, psi: Array, material: ConductivityTensor, extended: bool) -> Array:
+    def conductive(self, psi: Array, material: GradientTensor, extended: bool) -> Array:
         """Refused: a fourfold micro-conductivity conducts isotropically."""
         raise CalibrationError(
             "the fourfold law conducts equally in all directions; use Cosine for conduction"

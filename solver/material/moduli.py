@@ -18,7 +18,14 @@ from ..arrays import Array
 from .family import Family
 from .physics import Physics
 from .strains import elongations, end_rows, homogeneous_shear, homogeneous_stretch
-from .tensors import ConductivityTensor, ElasticTensor, ElectricConductivityTensor, Material
+from .tensors import (
+    BendingTensor,
+    ConductivityTensor,
+    ElasticTensor,
+    ElectricConductivityTensor,
+    GradientTensor,
+    Material,
+)
 
 #: Products of pairs of entries in the order 11, 22, 12, 66, 16, 26 and 11, 22, 12.
 PAIRS3 = ([0, 1, 0, 2, 0, 1], [0, 1, 1, 2, 2, 2])
@@ -29,7 +36,7 @@ class Moduli(ABC):
     """Stiffnesses of the bonds of a family, and what kind of bonds they are."""
 
     #: The macroscopic tensor that such bonds make.
-    tensor: ClassVar[type[Material]]
+    tensor: ClassVar[type[Material | GradientTensor]]
 
     @property
     def physics(self) -> Physics:
@@ -102,7 +109,7 @@ class Moduli(ABC):
 class ElasticModuli(Moduli):
     """k_n and k_t of every bond of the family, shapes (n,), N/m⁵ per unit thickness."""
 
-    tensor: ClassVar[type[Material]] = ElasticTensor
+    tensor: ClassVar[type[Material | GradientTensor]] = ElasticTensor
 
     normal: Array
     shear: Array
@@ -140,10 +147,42 @@ class ElasticModuli(Moduli):
 
 
 @dataclass(frozen=True, eq=False)
+class PolarModuli(ElasticModuli):
+    """The same and k_b of every bond (Eq. 177), shape (n,), N/m³ per unit thickness."""
+
+    bending: Array
+
+    @property
+    def strains(self) -> tuple[str, ...]:
+        return "s", "γ", "χ"
+
+    @property
+    def stiffness(self) -> Array:
+        return np.stack([self.normal, self.shear, self.bending])
+
+    @property
+    def components(self) -> int:
+        return 3
+
+    @property
+    def curvature(self) -> CurvatureModuli:
+        """The same bonds as far as they resist curvature."""
+        return CurvatureModuli(self.bending)
+
+    def homogeneous(self, normal: Array) -> Array:
+        straight = np.zeros((1, 3, normal.shape[1]))
+        both = homogeneous_stretch(normal), homogeneous_shear(normal)
+        return np.concatenate([np.stack(both), straight])
+
+    def absolute(self) -> PolarModuli:
+        return PolarModuli(np.abs(self.normal), np.abs(self.shear), np.abs(self.bending))
+
+
+@dataclass(frozen=True, eq=False)
 class ConductiveModuli(Moduli):
     """k of every bond of the family, shape (n,), W/(m K) per m² and unit thickness."""
 
-    tensor: ClassVar[type[Material]] = ConductivityTensor
+    tensor: ClassVar[type[Material | GradientTensor]] = ConductivityTensor
 
     conductivity: Array
 
@@ -175,7 +214,13 @@ class ConductiveModuli(Moduli):
 class ElectricModuli(ConductiveModuli):
     """The same of current: k of every bond, shape (n,), S/m per m² and unit thickness."""
 
-    tensor: ClassVar[type[Material]] = ElectricConductivityTensor
+    tensor: ClassVar[type[Material | GradientTensor]] = ElectricConductivityTensor
+
+
+class CurvatureModuli(ConductiveModuli):
+    """k_b of bonds that resist curvature, as conduction of a rotation: a pair carries |ξ|."""
+
+    tensor: ClassVar[type[Material | GradientTensor]] = BendingTensor
 
 
 def pair_length(family: Family, physics: Physics) -> Array:
@@ -183,7 +228,7 @@ def pair_length(family: Family, physics: Physics) -> Array:
     return family.length if physics.energy_by_length else np.ones(family.size)
 
 
-def bond_weights(family: Family, material: Material) -> Array:
+def bond_weights(family: Family, material: Material | GradientTensor) -> Array:
     """½ α Λ L Δv of each bond, shape (n,)."""
     return 0.5 * family.weight * family.cell_area * pair_length(family, material.physics)
 

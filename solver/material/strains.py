@@ -4,6 +4,7 @@ A bond from p to q has the normal n, the tangent t (n turned by +90°) and the l
 
     s = n·(u_q − u_p)/ℓ                            stretch (Eq. 1)
     γ = t·(u_q − u_p)/ℓ − (a_p θ_p + a_q θ_q)/ℓ    shear (Eq. 2)
+    χ = (θ_q − θ_p)/ℓ                              bending (Eq. 3), of polar solids only
     g = (T_q − T_p)/ℓ                              gradient of a temperature or potential
 
 The arms a_p, a_q say how far each rotation carries the bond's point of contact, its middle: half
@@ -39,12 +40,18 @@ def sheared(n1: Any, n2: Any, d1: Any, d2: Any, turn: Any) -> Any:
     return n1 * d2 - n2 * d1 - turn
 
 
+@nb.njit(**_INLINE)
+def bent(d3: Any) -> Any:
+    """ℓ χ of a difference θ_q − θ_p of rotations."""
+    return d3
+
+
 def elongations(strains: tuple[str, ...], normal: Array, difference: Array, turn: Array) -> Array:
     """ℓ times each strain of some bonds, shape (strains, ...).
 
     Parameters
     ----------
-    strains : tuple of {"s", "γ", "g"}
+    strains : tuple of {"s", "γ", "χ", "g"}
     normal : ndarray, shape (2, ...)
     difference : ndarray, shape (components, ...)
         Values at q less those at p.
@@ -58,21 +65,24 @@ def elongations(strains: tuple[str, ...], normal: Array, difference: Array, turn
             found.append(stretched.py_func(n1, n2, d[0], d[1]))
         elif strain == "γ":
             found.append(sheared.py_func(n1, n2, d[0], d[1], turn))
+        elif strain == "χ":
+            found.append(bent.py_func(d[2]) + 0.0 * n1)
         elif strain == "g":
             found.append(d[0] + 0.0 * n1)
         else:
-            raise ValueError(f"unknown strain {strain!r} of a bond; known: s, γ, g")
+            raise ValueError(f"unknown strain {strain!r} of a bond; known: s, γ, χ, g")
     return np.stack(np.broadcast_arrays(*found))
 
 
 def directions(strains: tuple[str, ...], normal: Array) -> Array:
     """Unit vectors along which the force of each strain acts, or its flow runs.
 
-    n for s and g, t for γ; `normal` has shape (2, ...), the result (strains, 2, ...).
+    n for s and g, t for γ, none for χ, which exerts a couple alone; `normal` has shape (2, ...),
+    the result (strains, 2, ...).
     """
     n1, n2 = normal
-    tangent = np.stack([-n2, n1])
-    return np.stack([tangent if strain == "γ" else np.asarray(normal) for strain in strains])
+    along = {"γ": np.stack([-n2, n1]), "χ": np.zeros_like(normal)}
+    return np.stack([along.get(strain, np.asarray(normal)) for strain in strains])
 
 
 def end_rows(

@@ -176,13 +176,13 @@ def stress_rotation(psi: float) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class ConductivityTensor:
-    """Plane thermal conductivity (Eqs. 136–137), q = −D ∇T.
+class GradientTensor:
+    """What a gradient in the plane meets: of a temperature, a potential, or a rotation.
 
     Parameters
     ----------
     matrix : array_like, shape (2, 2)
-        Symmetric positive definite, W/(m K).
+        Symmetric positive definite.
 
     Raises
     ------
@@ -190,36 +190,37 @@ class ConductivityTensor:
         If the matrix is not 2×2, not finite, not symmetric or not positive definite.
     """
 
-    physics: ClassVar[Physics] = HEAT
+    physics: ClassVar[Physics]
+    name: ClassVar[str]
 
     matrix: Array
 
     def __init__(self, matrix: ArrayLike) -> None:
-        object.__setattr__(self, "matrix", _validated(matrix, 2, "the conductivity tensor"))
+        object.__setattr__(self, "matrix", _validated(matrix, 2, self.name))
 
     @classmethod
     def isotropic(cls, k: float) -> Self:
-        """Isotropic conductor of conductivity `k`."""
+        """The same `k` in all directions."""
         return cls(np.diag([k, k]))
 
     @classmethod
     def orthotropic(cls, k1: float, k2: float, angle: float = 0.0) -> Self:
-        """Principal conductivities `k1`, `k2`, the first along `angle` (rad)."""
+        """Principal values `k1`, `k2`, the first along `angle` (rad)."""
         return cls(np.diag([k1, k2])).rotated(angle)
 
     @property
     def compliance(self) -> Array:
-        """Resistivity D⁻¹, shape (2, 2)."""
+        """The inverse, shape (2, 2): of a conductivity, the resistivity."""
         return np.asarray(np.linalg.inv(self.matrix), dtype=np.float64)
 
     def rotated(self, angle: float) -> Self:
-        """The same conductor turned anticlockwise by `angle` (rad)."""
+        """The same solid turned anticlockwise by `angle` (rad)."""
         c, s = np.cos(angle), np.sin(angle)
         q = np.array([[c, -s], [s, c]])
         return type(self)(q @ self.matrix @ q.T)
 
     def principal(self) -> tuple[float, float, float]:
-        """Largest and smallest conductivity and the angle (rad) of the first (Eqs. 160–162).
+        """Largest and smallest value and the angle (rad) of the first (Eqs. 160–162).
 
         The printed tan⁻¹ of Eq. 162 gives the axis of the *smaller* one when D11 < D22 and
         divides by zero when they are equal; the two-argument form has neither fault.
@@ -228,6 +229,23 @@ class ConductivityTensor:
         angle = 0.5 * float(np.arctan2(2 * d[0, 1], d[0, 0] - d[1, 1]))
         low, high = np.linalg.eigvalsh(d)
         return float(high), float(low), angle
+
+
+class ConductivityTensor(GradientTensor):
+    """Plane thermal conductivity (Eqs. 136–137), q = −D ∇T; `matrix` in W/(m K)."""
+
+    physics: ClassVar[Physics] = HEAT
+    name: ClassVar[str] = "the conductivity tensor"
+
+
+class BendingTensor(GradientTensor):
+    """Stiffness of a polar solid against curvature (Eq. 178), m = E ∇θ; `matrix` in N.
+
+    Couple stresses (m31, m32) are couples per area, N/m; E_3131 and E_3232 stand on the diagonal.
+    """
+
+    physics: ClassVar[Physics] = ELASTICITY
+    name: ClassVar[str] = "the bending stiffness"
 
 
 class ElectricConductivityTensor(ConductivityTensor):
@@ -258,6 +276,67 @@ class ElectricConductivityTensor(ConductivityTensor):
         if not all(np.isfinite(r) and r > 0.0 for r in (rho1, rho2)):
             raise ValueError(f"resistivities must be positive and finite, not {rho1} and {rho2}")
         return cls.orthotropic(1.0 / rho1, 1.0 / rho2, angle)
+
+
+@dataclass(frozen=True, eq=False)
+class PolarTensor(ElasticTensor):
+    """Elastic solid that resists curvature, too (Eqs. 177–178): σ as before, m = E ∇θ.
+
+    A micropolar (Cosserat) solid: where the rotation θ of its points is not that ω of the
+    displacement, it stores W = 2 μ_c (ω − θ)² more. Bonds leave no choice of μ_c = C66 − C12.
+
+    Parameters
+    ----------
+    voigt : array_like, shape (3, 3), or ElasticTensor
+    bending : array_like, shape (2, 2)
+        E_3131 and E_3232 on the diagonal, N; see `BendingTensor`.
+
+    Raises
+    ------
+    ValueError
+        If C66 ≤ C12, or a tensor is not positive definite.
+
+    Examples
+    --------
+    >>> solid = PolarTensor(ElasticTensor.isotropic(E=2.4, nu=0.2), [[0.04, 0], [0, 0.04]])
+    >>> round(solid.cosserat_modulus, 12), round(solid.coupling_number**2, 12)
+    (0.5, 0.333333333333)
+    """
+
+    bending: BendingTensor
+
+    def __init__(
+        self, voigt: ArrayLike | ElasticTensor, bending: ArrayLike | BendingTensor | None = None
+    ) -> None:
+        super().__init__(voigt.voigt if isinstance(voigt, ElasticTensor) else voigt)
+        if bending is None:
+            raise ValueError(
+                "a polar solid needs its bending stiffness: PolarTensor(elastic tensor, bending)"
+            )
+        if not isinstance(bending, BendingTensor):
+            bending = BendingTensor(bending)
+        object.__setattr__(self, "bending", bending)
+        if not self.cosserat_modulus > 1e-9 * np.abs(self.voigt).max():
+            raise ValueError(
+                f"a polar solid of bonds needs C66 > C12 (isotropic: ν < 1/3 in plane stress, "
+                f"ν < 1/4 in plane strain): its Cosserat modulus μ_c = C66 − C12 = "
+                f"{self.cosserat_modulus:.6g} Pa ties rotations to the displacement, and would "
+                f"not hold them"
+            )
+
+    @property
+    def cosserat_modulus(self) -> float:
+        """μ_c = C66 − C12, Pa; Eringen's κ is twice that."""
+        return float(self.voigt[2, 2] - self.voigt[0, 1])
+
+    @property
+    def coupling_number(self) -> float:
+        """N = √(μ_c/(C66 + μ_c)), below √(2/3): couple-stress elasticity would be N = 1."""
+        return float(np.sqrt(self.cosserat_modulus / (self.voigt[2, 2] + self.cosserat_modulus)))
+
+    def rotated(self, angle: float) -> PolarTensor:
+        """The same solid turned anticlockwise by `angle` (rad)."""
+        return PolarTensor(super().rotated(angle), self.bending.rotated(angle))
 
 
 Material = ElasticTensor | ConductivityTensor

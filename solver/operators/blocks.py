@@ -38,11 +38,16 @@ def bond_blocks(family: Family, moduli: Moduli) -> tuple[Array, Array]:
     return own, coupling
 
 
-def offset_blocks(family: Family, moduli: Moduli) -> Array:
+def offset_blocks(family: Family, moduli: Moduli, coupling: bool = False) -> Array:
     """Entries of K_pp of all offsets, shape (family size, 6, 3 or 1).
 
     Elasticity: A11, A12, A22, t̂1, t̂2, c, the first three only where no bond resists shear;
-    conduction: w k/|ξ|². K_pq has the same entries, [[−A, t̂], [−t̂ᵀ, c]].
+    conduction: w k/|ξ|². With `coupling` those of K_pq = [[−A, t̂], [−t̂ᵀ, c]]: the same, but for
+    bending of polar solids, which adds w k_b/|ξ| to the one c and takes it from the other.
     """
-    own, _ = bond_blocks(family, moduli)
-    return np.column_stack([own[:, a, b] for a, b in entries(moduli.components)])
+    own, between = bond_blocks(family, moduli)
+    block = own
+    if coupling:
+        turning = np.array(moduli.physics.turning[: moduli.components])
+        block = np.where(turning[:, None] | turning, between, -between)
+    return np.column_stack([block[:, a, b] for a, b in entries(moduli.components)])

@@ -18,7 +18,7 @@ from scipy.sparse.linalg import LinearOperator
 
 from ..arrays import Array, Mask
 from ..bonds import Bonds
-from ..material import Moduli
+from ..material import Moduli, PolarModuli
 from . import kernels, segments
 from .blocks import entries as block_entries
 from .blocks import offset_blocks
@@ -64,7 +64,10 @@ class BondOperator(LinearOperator):
         dx, dy = bonds.family.offsets[:half].T
         #: What the kernels read, see `solver.operators.kernels`.
         self.steps = (dy * row + dx).astype(np.uint64)
-        self.half_blocks = np.ascontiguousarray(self.blocks[:half])
+        coupling = self.blocks
+        if isinstance(moduli, PolarModuli):
+            coupling = offset_blocks(bonds.family, moduli, coupling=True)
+        self.half_blocks = np.ascontiguousarray(coupling[:half])
         self.bulk = self._diagonal_sums(np.ones((bonds.family.size, 1)))[:, 0]
         #: Runs of particles of one kind, as the kernels read them.
         self.segments, self.diagonal = self._layout()

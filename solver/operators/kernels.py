@@ -12,7 +12,9 @@ unsigned because a signed index may mean "from the end", a test that keeps loops
 
 Per half offset o with n, t, w = α Λ Δv, lengths in units of the operator's rotation length:
 F_p = Σ A (u_p − u_q) + t̂ (θ_p + θ_q), M_p = Σ −t̂·(u_q − u_p) + c (θ_p + θ_q), with
-A = (w/|ξ|)(k_n nnᵀ + k_t ttᵀ), t̂ = (w/2) k_t t, c = (w/4)|ξ| k_t (Eqs. 19–20).
+A = (w/|ξ|)(k_n nnᵀ + k_t ttᵀ), t̂ = (w/2) k_t t, c = (w/4)|ξ| k_t (Eqs. 19–20). Bending of polar
+solids, (w/|ξ|) k_b, adds to c on the diagonal and takes it from c between particles: the same
+arrays, the same kernels.
 """
 
 from __future__ import annotations

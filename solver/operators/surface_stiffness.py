@@ -15,7 +15,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from ..arrays import Array, Indices, Mask
 from ..bonds import EndedBonds
 from ..bonds.ended import SHORTEST
-from ..material import Family, Moduli
+from ..material import Family, Moduli, PolarModuli
 from .blocks import entries
 from .skin import thickness
 
@@ -288,7 +288,7 @@ class Membrane(NamedTuple):
     edges : ndarray of int, shape (e,)
         Of the outline.
     along : ndarray, shape (2 or 1, e)
-        Their directions.
+        Their directions; zero where the strain is the curvature of a polar solid along an edge.
     weight : ndarray, shape (e,)
         Twice the energy for a strain of one along each edge.
     strain : sparse, shape (e, components·s)
@@ -326,8 +326,20 @@ def membrane(ended: EndedBonds, family: Family, moduli: Moduli, number: Indices)
     rows[0, : len(along)] = along / length
     one = np.ones(len(edges))
     count = int((number >= 0).sum())
-    strain = place(rows, [(ends[edges, 1], one), (ends[edges, 0], -one)], count)
-    return Membrane(edges, along, stiffness * length, strain)
+    across = [(ends[edges, 1], one), (ends[edges, 0], -one)]
+    found = Membrane(edges, along, stiffness * length, place(rows, across, count))
+    if not isinstance(moduli, PolarModuli):
+        return found
+    # What curvature along the edge meets, in the same strip.
+    bending = thickness(outline, family, moduli.curvature, edges) / family.cell_area
+    turned = np.zeros((1, c, len(edges)))
+    turned[0, 2] = 1.0 / (moduli.scales(family.spacing)[2] * length)
+    return Membrane(
+        np.concatenate([edges, edges]),
+        np.concatenate([along, np.zeros_like(along)], axis=1),
+        np.concatenate([found.weight, bending * length]),
+        sparse.csr_array(sparse.vstack([found.strain, place(turned, across, count)])),
+    )
 
 
 def _stiffness_of_skin(skin: Membrane | None, shape: tuple[int, int]) -> sparse.csc_array:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from solver import Crack, Family, Region
 from solver.geometry import Lattice
-from solver.material import ConductiveModuli, ElasticModuli, Moduli
+from solver.material import ConductiveModuli, ElasticModuli, Moduli, PolarModuli
 
 Array = NDArray[np.float64]
 
@@ -100,6 +100,9 @@ def random_moduli(family: Family, kind: str, seed: int) -> Moduli:
     if kind == "conductive":
         return ConductiveModuli(normal)
     shear = np.zeros(family.size) if kind == "central" else mirrored(rng.uniform(-1, 1, half))
+    if kind == "polar":
+        bending = family.spacing**2 * mirrored(rng.uniform(-1, 2, half))
+        return PolarModuli(normal, shear, bending)
     return ElasticModuli(normal, shear)
 
 
@@ -111,8 +114,8 @@ def dense_stiffness(
 ) -> Array:
     """Hessian of the energy over the cell, one unordered pair after another.
 
-    ½ |ξ| (k_n s² + k_t γ²) α Λ Δv² for an elastic pair and ½ k g² α Λ Δv² for a conducting one,
-    rotations as θ Δx; `factor` scales single pairs.
+    ½ |ξ| (k_n s² + k_t γ²) α Λ Δv² for an elastic pair (and k_b χ² of a polar solid's) and
+    ½ k g² α Λ Δv² for a conducting one, rotations as θ Δx; `factor` scales single pairs.
     """
     conductive = isinstance(moduli, ConductiveModuli)
     components = 1 if conductive else 3 if moduli.has_shear else 2
@@ -148,6 +151,9 @@ def dense_stiffness(
                 gamma[[2 * count + p, 2 * count + q]] = -0.5 / dx
             matrix += weight * xi * moduli.normal[o] * np.outer(s, s)
             matrix += weight * xi * moduli.shear[o] * np.outer(gamma, gamma)
+            if isinstance(moduli, PolarModuli):
+                chi = row([0, 0, -1 / (xi * dx)], [0, 0, 1 / (xi * dx)])
+                matrix += weight * xi * moduli.bending[o] * np.outer(chi, chi)
     return matrix
 
 

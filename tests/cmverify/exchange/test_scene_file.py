@@ -173,6 +173,31 @@ height = 1.0
 """
 
 
+def test_polar_solids(tmp_path):
+    polar = (
+        PLATE
+        + """
+    [material]
+    kind = "isotropic"
+    E = 1.0
+    nu = 0.2
+    bending = [[0.1, 0.0], [0.0, 0.1]]
+    [[support]]
+    layer_cells = 2.5
+    displacement = [0, 0]
+    rotation = "x"
+    """
+    )
+    (tmp_path / "polar.toml").write_text(polar)
+    found = scene_file.request(tmp_path / "polar.toml").run()
+    written = found.write(tmp_path / "polar")
+    assert found.fields()["couple_stress"].shape == (found.statistics.particles, 2)
+    assert written[0].exists()
+    (tmp_path / "polar.toml").write_text(polar.replace("nu = 0.2", "nu = 0.4"))
+    with pytest.raises(SceneFileError, match="needs C66 > C12"):
+        scene_file.request(tmp_path / "polar.toml")
+
+
 def test_conductors_of_current_and_temperatures(tmp_path):
     live = (
         PLATE

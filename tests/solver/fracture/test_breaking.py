@@ -10,6 +10,7 @@ from solver import (
     Crack,
     ElasticTensor,
     Family,
+    PolarTensor,
     Scene,
     SceneError,
     Support,
@@ -20,6 +21,7 @@ from tests.solver.bodies import block, few
 from tests.solver.fracture.one_bond_at_a_time import utilisation
 
 STIFF = ElasticTensor([[3.0, 0.8, 0.2], [0.8, 2.0, 0.1], [0.2, 0.1, 1.1]])
+POLAR = PolarTensor(STIFF, [[0.7, 0.2], [0.2, 0.4]])
 HELD = Support.where(lambda x, y: y < 1, displacement=(0.0, 0.0), rotation=0.0)
 
 
@@ -49,10 +51,10 @@ def test_energies_follow_their_definition(seed, surface, tension_only):
 
 
 @few
-@given(st.integers(0, 10**6))
-def test_stored_energy_is_that_of_the_operator_and_of_recovery(seed):
-    parts = scene(supports=[Support.where(lambda x, y: (x < 2) & (y < 1), displacement=(0, 0))])
-    parts = parts.discretise()
+@given(st.integers(0, 10**6), st.sampled_from([STIFF, POLAR]))
+def test_stored_energy_is_that_of_the_operator_and_of_recovery(seed, material):
+    held = Support.where(lambda x, y: (x < 2) & (y < 1), displacement=(0, 0))
+    parts = scene(supports=[held], material=material).discretise()
     field = random_field(parts, seed)
     field[parts.prescribed] = 0.0
     bonds = Breakable(parts, np.ones(parts.family.size))
@@ -61,6 +63,23 @@ def test_stored_energy_is_that_of_the_operator_and_of_recovery(seed):
     assert bonds.stored(field) == pytest.approx(expected, rel=1e-12)
     everything = np.arange(bonds.strengths.size)[bonds.strengths.ravel() > 0]
     assert bonds.energy_of(field, everything).sum() == pytest.approx(expected, rel=1e-12)
+
+
+def test_what_a_polar_bond_is_loaded_by():
+    """w of Eq. 4: w_χ counts with w_s and w_γ, the axial criterion knows w_s alone."""
+    parts, plain = (scene(material=material).discretise() for material in (POLAR, STIFF))
+    tough = np.full(parts.family.size, 2.0)
+    field = random_field(parts, 3)
+    polar, elastic = (Breakable(p, tough, tension_only=False) for p in (parts, plain))
+    found, without = polar.utilisation(field).copy(), elastic.utilisation(field).copy()
+    o, p, q = polar.ends(np.nonzero((polar.strengths > 0).ravel())[0])
+    chi = (field[2, q] - field[2, p]) / parts.family.spacing / parts.family.length[o]
+    more = 0.5 * parts.family.length[o] * parts.moduli.bending[o] * chi**2 / 2.0
+    more *= polar.strengths[o, p] * ~polar.kept[o, p]
+    np.testing.assert_allclose((found - without)[o, p], more, atol=1e-12)
+    assert more.max() > 0.1
+    axial = [Breakable(p, tough, criterion="axial") for p in (parts, plain)]
+    np.testing.assert_array_equal(*(bonds.utilisation(field) for bonds in axial))
 
 
 def test_stored_energy_in_a_homogeneous_strain_is_the_continuums():

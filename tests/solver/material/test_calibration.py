@@ -15,12 +15,14 @@ from solver import (
     ElasticTensor,
     Family,
     Fourfold,
+    PolarTensor,
     TwoHarmonic,
     UniformShear,
 )
 from solver.material import (
     ConductiveModuli,
     ElasticModuli,
+    PolarModuli,
     bond_weights,
     calibrate,
     calibrated,
@@ -43,6 +45,45 @@ families = st.builds(
 
 def relative(found, wanted):
     return np.abs(found - wanted).max() / np.abs(wanted).max()
+
+
+# ---- bending of polar solids ---------------------------------------------------------------------
+
+
+@few
+@given(families, conductivities(), st.sampled_from(["lattice", "positive"]))
+def test_sums_of_k_b_are_the_bending_stiffness(family, bending, calibration):
+    """½ Σ α Λ |ξ| Δv k_b n nᵀ = E, and nothing else of the solid knows of it."""
+    solid = ElasticTensor.isotropic(2.4, 0.2)
+    moduli = calibrate(family, PolarTensor(solid, bending), calibration)
+    assert isinstance(moduli, PolarModuli)
+    weight = 0.5 * family.weight * family.length * family.spacing**2 * moduli.bending
+    found = np.einsum("o,oi,oj->ij", weight, family.normal, family.normal)
+    assert relative(found, bending) < 1e-10
+    assert relative(effective_tensor(family, moduli.curvature), bending) < 1e-10
+    assert relative(effective_tensor(family, moduli), solid.voigt) < 1e-10
+    plain = calibrate(family, solid, calibration)
+    np.testing.assert_array_equal(moduli.normal, plain.normal)
+    np.testing.assert_array_equal(moduli.shear, plain.shear)
+    if calibration == "positive":
+        assert moduli.bending.min() >= 0
+
+
+@exact
+@given(st.floats(0.4, 2.5), st.floats(0.1, 3.0))
+def test_the_papers_bending_micromoduli(ratio, delta):
+    """Eqs. 179–181 with n = 2, which the integral over the horizon's disc makes right."""
+    first, second = ratio, 1.0
+    family = Family(4, delta / 4)
+    solid = PolarTensor(ElasticTensor.isotropic(2.4, 0.2), np.diag([first, second]))
+    # cos² along the material's axis 1 whichever is the stiffer.
+    moduli = calibrate(family, solid, "continuum", Cosine(2, axis=0.0))
+    k31 = 3 * (3 * first - second) / (np.pi * delta**3)
+    k32 = 3 * (3 * second - first) / (np.pi * delta**3)
+    wanted = k32 + (k31 - k32) * np.cos(family.angle) ** 2
+    np.testing.assert_allclose(moduli.bending, wanted, rtol=1e-11)
+    # The smallest even exponent by default: no k_b is negative.
+    assert calibrate(family, solid, "continuum").bending.min() > -1e-12 * k31
 
 
 # ---- the sums, written out again ----------------------------------------------------------------

@@ -60,7 +60,7 @@ def operator_of(family, moduli, cells):
 
 @few
 @given(
-    st.sampled_from(["elastic", "central", "conductive"]),
+    st.sampled_from(["elastic", "central", "conductive", "polar"]),
     st.integers(0, 10**6),
     st.tuples(st.floats(-3.1, 3.1), st.floats(-3.1, 3.1)),
     st.sampled_from([1, 2, 2.5]),

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from solver.material import Family
 from solver.material.physics import ELASTICITY, HEAT
 from solver.material.strains import (
+    bent,
     directions,
     elongations,
     end_rows,
@@ -18,7 +19,7 @@ from solver.material.strains import (
 )
 from tests.solver.bodies import exact
 
-ELASTIC = ("s", "γ")
+ELASTIC, POLAR = ("s", "γ"), ("s", "γ", "χ")
 
 
 def test_a_bond_by_hand():
@@ -27,6 +28,7 @@ def test_a_bond_by_hand():
     s, gamma = elongations(ELASTIC, normal, difference, np.array(1.0 * 0.01 + 1.0 * 0.03)) / 2.0
     assert s == pytest.approx(0.1)
     assert gamma == pytest.approx(0.05 - 0.02)
+    assert elongations(("χ",), normal, difference, np.array(0.0)) / 2.0 == pytest.approx(0.01)
     assert elongations(("g",), normal, np.array([3.0]), np.array(0.0)) / 2.0 == pytest.approx(1.5)
 
 
@@ -36,9 +38,10 @@ def test_rigid_motions_strain_nothing_wherever_the_bond_is_held(angle, shift, sh
     family = Family(3, 0.5)
     normal, length = family.normal.T, family.length
     # u = shift + angle e3 × x, θ = angle; the arms add up to the length.
-    difference = angle * length * np.stack([-normal[1], normal[0]])
+    turned = length * np.stack([-normal[1], normal[0]])
+    difference = angle * np.concatenate([turned, np.zeros((1, family.size))])
     turn = angle * (share * length + (1 - share) * length)
-    assert np.abs(elongations(ELASTIC, normal, difference, turn)).max() < 1e-15
+    assert np.abs(elongations(POLAR, normal, difference, turn)).max() < 1e-15
     motions = ELASTICITY.motions(np.array([shift]))
     assert motions.shape == (3, 3, 1)
     assert motions[2, :2, 0] == pytest.approx((-shift[1], shift[0]))
@@ -50,7 +53,7 @@ def test_rows_of_both_ends_add_up_to_the_strains(seed):
     rng = np.random.default_rng(seed)
     family = Family(2.5, 0.4)
     normal = family.normal.T
-    for physics, strains in ((ELASTICITY, ELASTIC), (HEAT, ("g",))):
+    for physics, strains in ((ELASTICITY, ELASTIC), (ELASTICITY, POLAR), (HEAT, ("g",))):
         scales = physics.scales(0.4)
         ends = rng.normal(size=(2, len(scales), family.size))
         arms = rng.uniform(0.1, 1.0, (2, family.size))
@@ -80,13 +83,15 @@ def test_homogeneous_strains(strain):
 
 def test_forces_act_along_normal_and_tangent():
     family = Family(2)
-    along = directions(ELASTIC, family.normal.T)
+    along = directions(POLAR, family.normal.T)
     np.testing.assert_array_equal(along[0], family.normal.T)
     np.testing.assert_array_equal(along[1], family.tangent.T)
+    assert not along[2].any()
 
 
 def test_kernels_compile_what_arrays_use():
     assert stretched(0.6, 0.8, 1.0, 2.0) == stretched.py_func(0.6, 0.8, 1.0, 2.0)
+    assert bent(0.3) == bent.py_func(0.3)
     assert sheared(0.6, 0.8, 1.0, 2.0, 0.3) == sheared.py_func(0.6, 0.8, 1.0, 2.0, 0.3)
 
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from solver import ConductivityTensor, ElasticTensor, Family
+from references.analytic.cosserat import shear_speed
+from solver import ConductivityTensor, ElasticTensor, Family, PolarTensor
 from solver.material import brillouin_zone, calibrate
 from solver.material.symbol import acoustic_tensor, condensed_symbol, margins, symbol
 from tests.solver.bodies import DISC, FIG_7
@@ -51,6 +52,18 @@ def test_long_waves_see_the_continuum():
     conduction = symbol(FAMILY, THERMAL, k) / size
     assert conduction == pytest.approx(direction @ DISC @ direction, rel=1e-5)
     assert margins(FAMILY, ELASTIC, k[None])[0] == pytest.approx(1.0, rel=1e-5)
+
+
+@pytest.mark.parametrize("length", [0.0, 0.3, 1.0, 3.0, 30.0])
+def test_shear_waves_of_a_polar_solid_disperse_as_the_continuum(length):
+    """Waves long beside the horizon, whatever they are beside the solid's own length."""
+    solid, family, k = ElasticTensor.isotropic(2.4, 0.2), Family(3, 1e-3), np.array([5e-3, 0.0])
+    wave_number = k[0] / family.spacing
+    bending = np.diag([2.0, 1.0]) * (length / wave_number) ** 2
+    moduli = calibrate(family, PolarTensor(solid, bending) if length else solid, "lattice")
+    found = condensed_symbol(family, moduli, k) / wave_number**2
+    speed = shear_speed(solid.voigt, bending[0, 0], wave_number)
+    assert found[1, 1] == pytest.approx(float(speed), rel=2e-5)
 
 
 def test_half_of_the_zone_without_its_centre():

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from solver import ConductivityTensor, ElasticTensor
-from solver.material import stress_rotation
+from solver import ConductivityTensor, ElasticTensor, PolarTensor
+from solver.material import BendingTensor, stress_rotation
 from tests.solver.bodies import FIG_7, conductivities, exact, rotate_4, voigts
 
 angles = st.floats(-7.0, 7.0, allow_nan=False)
@@ -175,3 +175,29 @@ def test_tensors_are_copies_and_cannot_be_changed():
     assert solid.voigt[0, 0] == 1.0
     with pytest.raises(ValueError, match="read-only"):
         solid.voigt[0, 0] = 2.0
+
+
+def test_polar_solids_hold_the_rotations_of_their_points():
+    solid = PolarTensor(ElasticTensor.isotropic(2.4, 0.2), [[2.0, 0.5], [0.5, 1.0]])
+    assert solid.cosserat_modulus == pytest.approx(1.0 - 0.5)
+    assert solid.coupling_number**2 == pytest.approx(1 / 3)
+    turned = solid.rotated(np.pi / 2)
+    np.testing.assert_allclose(turned.bending.matrix, [[1.0, -0.5], [-0.5, 2.0]], atol=1e-14)
+    np.testing.assert_allclose(turned.voigt, solid.voigt, atol=1e-14)
+    assert PolarTensor(solid, BendingTensor.isotropic(1.0)).bending.matrix[0, 0] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("solid", "bending", "message"),
+    [
+        (ElasticTensor.isotropic(1.0, 0.34), np.eye(2), "needs C66 > C12"),
+        (ElasticTensor.isotropic(1.0, 1 / 3), np.eye(2), "needs C66 > C12"),
+        (ElasticTensor.isotropic(1.0, 0.26, "strain"), np.eye(2), "needs C66 > C12"),
+        (ElasticTensor.isotropic(1.0, 0.2), np.zeros((2, 2)), "bending stiffness must be"),
+        (ElasticTensor.isotropic(1.0, 0.2), np.diag([1.0, -1.0]), "bending stiffness is not"),
+        (ElasticTensor.isotropic(1.0, 0.2), None, "needs its bending stiffness"),
+    ],
+)
+def test_polar_solids_that_are_none(solid, bending, message):
+    with pytest.raises(ValueError, match=message):
+        PolarTensor(solid, bending)

@@ -11,12 +11,12 @@ from solver.operators.assembled import to_csr
 from tests.solver.bodies import block, dense_stiffness, random_moduli
 
 
-@pytest.mark.parametrize("kind", ["elastic", "central", "conductive"])
+@pytest.mark.parametrize("kind", ["elastic", "central", "conductive", "polar"])
 def test_matrix_is_the_hessian(kind):
     family = Family(2, 0.5)
     lattice = Lattice(block(5, 4, 0.5), 0.5, family.reach)
     moduli = random_moduli(family, kind, 4)
-    components = {"elastic": 3, "central": 2, "conductive": 1}[kind]
+    components = {"elastic": 3, "central": 2, "conductive": 1, "polar": 3}[kind]
     held = np.zeros((components, lattice.count), dtype=bool)
     matrix = to_csr(BondOperator(Bonds(lattice, family), moduli, held)).toarray()
     np.testing.assert_allclose(matrix, dense_stiffness(lattice, family, moduli), atol=1e-12)

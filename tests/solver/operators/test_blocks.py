@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from solver import Family
+from solver.material import ElasticModuli
 from solver.operators.blocks import offset_blocks
 from tests.solver.bodies import random_moduli
 
@@ -30,6 +31,19 @@ def test_elastic_blocks_are_the_hessian_of_a_bond():
         np.testing.assert_allclose(hessian[:3, 3:], wanted, atol=1e-12)
 
 
+def test_bending_of_a_bond_turns_its_ends_apart():
+    """|ξ| k_b χ² of rotations θ Δx; nothing else of the block knows of it."""
+    moduli = random_moduli(FAMILY, "polar", 3)
+    plain = ElasticModuli(moduli.normal, moduli.shear)
+    more = offset_blocks(FAMILY, moduli) - offset_blocks(FAMILY, plain)
+    less = offset_blocks(FAMILY, moduli, coupling=True) - offset_blocks(FAMILY, plain)
+    wanted = FAMILY.weight * FAMILY.cell_area * moduli.bending / FAMILY.length / FAMILY.spacing**2
+    np.testing.assert_allclose(more[:, 5], wanted, rtol=1e-10)
+    np.testing.assert_allclose(less[:, 5], -wanted, rtol=1e-10)
+    assert not more[:, :5].any()
+    assert not less[:, :5].any()
+
+
 def test_bonds_without_shear_have_no_rotations():
     central = random_moduli(FAMILY, "central", 3)
     assert offset_blocks(FAMILY, central).shape == (FAMILY.size, 3)
@@ -42,9 +56,14 @@ def test_conductive_blocks():
     assert offset_blocks(FAMILY, moduli).shape == (FAMILY.size, 1)
 
 
-@pytest.mark.parametrize("kind", ["elastic", "central", "conductive"])
+@pytest.mark.parametrize("kind", ["elastic", "central", "conductive", "polar"])
 def test_opposite_bonds_have_blocks_of_the_right_parity(kind):
-    blocks = offset_blocks(FAMILY, random_moduli(FAMILY, kind, 3))
+    moduli = random_moduli(FAMILY, kind, 3)
+    blocks = offset_blocks(FAMILY, moduli)
+    coupling = offset_blocks(FAMILY, moduli, coupling=True)
+    if kind != "polar":
+        # One set of entries serves the diagonal and the neighbours, to the last bit.
+        np.testing.assert_array_equal(coupling, blocks)
     half = FAMILY.size // 2
     sign = np.array([1, 1, 1, -1, -1, 1])[: blocks.shape[1]]
     np.testing.assert_allclose(blocks[half:], sign * blocks[:half], atol=1e-15)

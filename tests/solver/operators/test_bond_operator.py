@@ -24,8 +24,8 @@ from tests.solver.bodies import (
 )
 from tests.solver.bonds.test_bonds import pair_factors
 
-KINDS = ["elastic", "central", "conductive"]
-COMPONENTS = {"elastic": 3, "central": 2, "conductive": 1}
+KINDS = ["elastic", "central", "conductive", "polar"]
+COMPONENTS = {"elastic": 3, "central": 2, "conductive": 1, "polar": 3}
 
 
 def free(kind, bonds):

@@ -10,7 +10,16 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import LinearOperator
 
-from solver import ConductivityTensor, Crack, ElasticTensor, Scene, Support, disc, rectangle
+from solver import (
+    ConductivityTensor,
+    Crack,
+    ElasticTensor,
+    PolarTensor,
+    Scene,
+    Support,
+    disc,
+    rectangle,
+)
 from solver.linear.condensed import Condensed, RotationBlock
 from solver.linear.two_level import BlockJacobi, TwoLevel
 from solver.operators import BondOperator
@@ -20,6 +29,7 @@ from tests.solver.bodies import FIG_7
 ISOTROPIC = ElasticTensor.isotropic(1.0, 0.2)
 CENTRAL = ElasticTensor.isotropic(1.0, 1 / 3)
 INDEFINITE = ElasticTensor.isotropic(1.0, 0.45)
+POLAR = PolarTensor(ISOTROPIC, [[0.03, 0.01], [0.01, 0.05]])
 CONDUCTOR = ConductivityTensor([[5.0, 2.0], [2.0, 1.0]])
 
 
@@ -70,6 +80,10 @@ TABLE = {
     "elastic, ended bonds, free": Line(
         lambda: bonds(ISOTROPIC, surface="extrapolated"), False, True
     ),
+    "polar, free": Line(lambda: bonds(POLAR), False, True),
+    "polar, ended bonds, free": Line(lambda: bonds(POLAR, surface="extrapolated"), False, True),
+    "polar, clamped, ended bonds": Line(lambda: bonds(POLAR, CLAMPED, surface="extrapolated")),
+    "polar, two levels": Line(lambda: TwoLevel(bonds(POLAR, CLAMPED, surface="extrapolated"))),
     "elastic, clamped": Line(lambda: bonds(ISOTROPIC, CLAMPED)),
     "elastic, on rollers": Line(lambda: bonds(ISOTROPIC, ROLLER)),
     "elastic, ended bonds": Line(lambda: bonds(ISOTROPIC, CLAMPED, surface="extrapolated")),

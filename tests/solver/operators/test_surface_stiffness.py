@@ -3,7 +3,16 @@
 import numpy as np
 import pytest
 
-from solver import ConductivityTensor, ElasticTensor, Load, Scene, Support, rectangle
+from solver import (
+    ConductivityTensor,
+    ElasticTensor,
+    Load,
+    PolarTensor,
+    Scene,
+    Support,
+    recovery,
+    rectangle,
+)
 from solver.operators.surface_stiffness import stiffness_of
 from tests.solver.bodies import FIG_7
 
@@ -90,3 +99,33 @@ def test_uniform_strain_under_its_tractions():
     exact = solution.surface_points @ slope.T
     error = np.linalg.norm(solution.surface_displacement - exact) / np.linalg.norm(exact)
     assert error < 0.02
+
+
+@pytest.mark.parametrize("share", [0.0, 0.4])
+def test_a_bent_polar_strip_is_as_thick_as_it_is_drawn(share):
+    """Couple stresses alone, E ≫ C H²: M/κ = E H, whole cells or not (by the membrane)."""
+    h, thickness, length = 1 / 8, 1 + share / 8, 10 / 8
+    supports = [
+        Support.edge(
+            lambda x, y, side=side: side * x > length / 2 - 1e-9,
+            u1=lambda x, y, side=side: -side * length / 2 * y,
+            rotation=side * length / 2,
+        )
+        for side in (-1, 1)
+    ]
+    solution = Scene(
+        region=rectangle(length, thickness),
+        spacing=h,
+        m=3,
+        material=PolarTensor(ElasticTensor.isotropic(1.0, 0.2), 1e4 * np.eye(2)),
+        surface="extrapolated",
+        supports=[
+            *supports,
+            Support.where(lambda x, y: np.hypot(x - h / 2, y - h / 2) < 0.01, u2=0),
+        ],
+    ).solve()
+    body = solution.discretisation
+    energy = body.operator.ended_stiffness
+    stored = (recovery.strain_energy_density(solution) * body.volumes).sum() * h**2
+    assert energy is not None
+    assert 2 * stored / length == pytest.approx(1e4 * thickness, rel=2e-3)
