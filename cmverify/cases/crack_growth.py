@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measurement, Method, OrderBand
-from cmverify.cases.common import adapters, materials
+from cmverify.cases.common import adapters, materials, warm
 
 if TYPE_CHECKING:
     from solver import Scene
@@ -261,14 +261,6 @@ def _lines(
     )
 
 
-def _warm() -> None:
-    from solver import fracture
-
-    strip = Strip(m=3)
-    strip.stress_ahead(16)
-    fracture.grow(strip.scene(16), 1.0, max_solves=3)
-
-
 QUANTITIES = {
     "release at initiation": "relative error of −ΔΠ/Δa between two cuts against σ v",
     "release in growth": "relative error of −dΠ/da of the growing crack against σ v",
@@ -284,7 +276,7 @@ QUANTITIES = {
 def _method(strip: Strip, ladder: dict[Level, tuple[int, ...]]) -> Method:
     name = f"{strip.material} {strip.degrees:g}°" + ("" if strip.m == 5 else f" m={strip.m}")
     run: Callable[[int], Measurement] = partial(bond, strip)
-    return Method(name, "bond", run, ladder, _warm)
+    return Method(name, "bond", run, ladder, warm.growth)
 
 
 STRIPS = tuple(Strip(material, degrees) for material in MATERIALS for degrees in (0.0, 45.0))

@@ -28,7 +28,7 @@ from cmverify.case import (
     Method,
     OrderBand,
 )
-from cmverify.cases.common import adapters, materials, sif
+from cmverify.cases.common import adapters, materials, sif, warm
 from cmverify.cases.common.scenes import cracked_disc
 from cmverify.judge.norms import relative_l2
 
@@ -295,19 +295,11 @@ def _lines(
     return tuple(plots)
 
 
-def _warm_bond(calibration: Calibration, surface: Surface = "volume") -> None:
-    # Below and above 2,000 unknowns the solver takes different ways, each with its kernels.
-    for n in (16, 24):
-        bond(Problem(1.0, 0.0), calibration, n, surface)
-
-
 def _warm_fem(order: int) -> None:
     fem(Problem(1.0, 0.0), order, False, 12)
 
 
-WARM_BOND = {c: partial(_warm_bond, c) for c in materials.CALIBRATIONS}
 TREATMENTS: tuple[Surface, ...] = ("none", "extrapolated")
-WARM_BESIDE = {t: partial(_warm_bond, "lattice", t) for t in TREATMENTS}
 WARM_FEM = {p: partial(_warm_fem, p) for p in (1, 2)}
 
 
@@ -319,15 +311,19 @@ def methods(problem: Problem) -> tuple[Method, ...]:
             "bond",
             partial(bond, problem, c),
             LADDER if c == "lattice" else BESIDE,
-            warm,
+            warm.statics,
         )
-        for c, warm in WARM_BOND.items()
+        for c in materials.CALIBRATIONS
     ]
     bonds += [
         Method(
-            f"bond/lattice {t}", "bond", partial(bond, problem, "lattice", surface=t), BESIDE, warm
+            f"bond/lattice {t}",
+            "bond",
+            partial(bond, problem, "lattice", surface=t),
+            BESIDE,
+            partial(warm.statics, t),
         )
-        for t, warm in WARM_BESIDE.items()
+        for t in TREATMENTS
     ]
     elements = [
         Method(name, "fem", partial(fem, problem, p, graded), BESIDE, WARM_FEM[p])

@@ -28,7 +28,7 @@ from cmverify.case import (
     Method,
     OrderBand,
 )
-from cmverify.cases.common import adapters, materials
+from cmverify.cases.common import adapters, materials, warm
 from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
@@ -155,22 +155,14 @@ def fem(problem: Problem, order: int, n: int) -> Measurement:
     )
 
 
-def _warm_bond(calibration: Calibration) -> None:
-    from references.analytic.conduction import disc_cubic_printed
-
-    # Below and above 2,000 unknowns the solver takes different ways, each with its kernels.
-    for n in (16, 40):
-        bond(Problem(disc_cubic_printed, heated=True), calibration, n)
-
-
 def _warm_fem(order: int) -> None:
     from references.analytic.conduction import disc_cubic_printed
 
     fem(Problem(disc_cubic_printed, heated=True), order, 8)
 
 
-WARM = {
-    **{f"bond/{c}": partial(_warm_bond, c) for c in materials.CALIBRATIONS},
+WARM: dict[str, Callable[[], None]] = {
+    **{f"bond/{c}": partial(warm.statics, conductive=True) for c in materials.CALIBRATIONS},
     **{f"fem/P{p}": partial(_warm_fem, p) for p in (1, 2)},
 }
 

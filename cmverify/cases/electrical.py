@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measurement, Method, OrderBand
-from cmverify.cases.common import adapters
+from cmverify.cases.common import adapters, warm
 from cmverify.cases.surfaces.bodies import at_points, nearest
 from cmverify.faults.changes import argument, result, scaled, times
 from cmverify.faults.fault import Fault
@@ -247,14 +247,6 @@ def same(scale: float, n: int) -> Measurement:
     )
 
 
-@cache
-def warm_up() -> None:
-    """Compile the kernels, below and above the 2,000 unknowns of direct solvers."""
-    for n in (10, 40):
-        solved(Strip("edge"), 0.4, n)
-    same(1.0, 20)
-
-
 STRIPS = {
     f"bond/{crack}{' crack, across the fibres' if across else ' crack'}": Strip(crack, across)
     for crack in ("edge", "centre")
@@ -285,7 +277,7 @@ CASES = (
                 "bond",
                 partial(cracked, strip),
                 ({Level.QUICK: (20,)} if name in _QUICK else {}) | _LONG,
-                warm_up,
+                warm.conduction,
             )
             for name, strip in STRIPS.items()
         ),
@@ -330,10 +322,16 @@ CASES = (
                 "bond",
                 partial(leads, False),
                 {Level.QUICK: (20,)} | _LONG,
-                warm_up,
+                warm.conduction,
             ),
-            Method("bond/potentials", "bond", partial(leads, True), _LONG, warm_up),
-            Method("bond/heat", "bond", partial(same, 1.0), dict.fromkeys(Level, (20,)), warm_up),
+            Method("bond/potentials", "bond", partial(leads, True), _LONG, warm.conduction),
+            Method(
+                "bond/heat",
+                "bond",
+                partial(same, 1.0),
+                dict.fromkeys(Level, (20,)),
+                warm.conduction,
+            ),
         ),
         checks=(
             Check(

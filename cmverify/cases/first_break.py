@@ -8,13 +8,12 @@ and its books have to hold what the bonds hold.
 
 from __future__ import annotations
 
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cmverify.case import Array, Case, Check, Level, Measurement, Method
-from cmverify.cases.common import materials
+from cmverify.cases.common import materials, warm
 
 if TYPE_CHECKING:
     from solver import Scene, Solution
@@ -119,12 +118,6 @@ def measure(n: int) -> Measurement:
     )
 
 
-@cache
-def warm_up() -> None:
-    """Compile the kernels. (No seconds are reported.)"""
-    measure(CELLS)
-
-
 QUANTITIES = {
     "load": "load factor at which the first bond breaks, against √(w_c/w)",
     "bonds": "bonds that break together less those that are equally loaded",
@@ -158,7 +151,7 @@ CASES = (
             "The most loaded bond breaks first, at the load at which its energy is critical, and "
             "work, stored energy and cost are the sums over the bonds."
         ),
-        methods=(Method("bond/lattice", "bond", measure, LADDER, warm_up),),
+        methods=(Method("bond/lattice", "bond", measure, LADDER, warm.growth),),
         checks=(
             *(
                 Check("bond/lattice", q, {CELLS: bound}, source="sum over bonds", exact=True)

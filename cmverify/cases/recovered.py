@@ -8,13 +8,12 @@ of forces and moments.
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 import numpy as np
 
 from cmverify.case import Array, Case, Check, Level, Measurement, Method
-from cmverify.cases.common import adapters, bond_energies, materials
+from cmverify.cases.common import adapters, bond_energies, materials, warm
 from cmverify.cases.hard import bodies
 from cmverify.judge.norms import relative_l2
 
@@ -176,13 +175,6 @@ def cut(n: int) -> Measurement:
     )
 
 
-@cache
-def warm_up() -> None:
-    """Compile the kernels. (No seconds are reported.)"""
-    elastic(CELLS)
-    conductive(CELLS)
-
-
 QUANTITIES = {
     "stress by planes": "stress by Saint-Venant and Cauchy's planes (Eq. 83)",
     "stress by families": "stress by the virial of each family",
@@ -228,7 +220,7 @@ CASES = (
             "bonds that a crack cuts."
         ),
         methods=tuple(
-            Method(name, "bond", run, LADDER, warm_up) for name, (run, _) in METHODS.items()
+            Method(name, "bond", run, LADDER, warm.both) for name, (run, _) in METHODS.items()
         ),
         checks=tuple(
             Check(

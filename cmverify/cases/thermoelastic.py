@@ -7,13 +7,13 @@ hottest at its centre has the stress of the closed form.
 
 from __future__ import annotations
 
-from functools import cache, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from cmverify.case import Array, Case, Check, Field, FieldSet, Level, Measurement, Method, OrderBand
-from cmverify.cases.common import adapters
+from cmverify.cases.common import adapters, warm
 from cmverify.cases.surfaces.bodies import displacement_errors, held, symmetric
 from cmverify.faults.changes import result, scaled, swapped
 from cmverify.faults.fault import Fault
@@ -131,13 +131,6 @@ def heated(scale: float, n: int) -> Measurement:
     )
 
 
-@cache
-def warm_up() -> None:
-    """Compile the kernels, below and above the 2,000 unknowns of direct solvers."""
-    for n in (8, 28):
-        heated(1.0, n)
-
-
 CASES = (
     Case(
         name="thermal-expansion",
@@ -151,7 +144,7 @@ CASES = (
         ),
         methods=(
             Method("bond/lattice", "bond", partial(expansion, 1.0),
-                   dict.fromkeys(Level, (CELLS,)), warm_up),
+                   dict.fromkeys(Level, (CELLS,)), partial(warm.statics, "extrapolated")),
         ),
         checks=tuple(
             Check(
@@ -187,7 +180,7 @@ CASES = (
         methods=(
             Method("bond/extrapolated", "bond", partial(heated, 1.0),
                    {Level.QUICK: (20,), Level.STANDARD: (20, 40), Level.PAPER: (20, 40, 80)},
-                   warm_up),
+                   partial(warm.statics, "extrapolated")),
         ),
         checks=(
             *(

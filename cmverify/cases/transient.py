@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from cmverify.case import Array, Case, Check, Field, FieldSet, Level, Measurement, Method, OrderBand
+from cmverify.cases.common.warm import conduction_in_time
 from cmverify.judge.norms import relative_l2
 
 CONDUCTIVITY = np.array([[5.0, 2.0], [2.0, 1.0]])
@@ -30,22 +31,6 @@ class Heat:
         given = exact.copy()
         given[0, 0] *= self.distortion
         return given
-
-
-@cache
-def warm_up() -> None:
-    """Compile the kernels of conduction."""
-    from solver import ConductivityTensor, Scene, rectangle, transient
-
-    scene = Scene(
-        region=rectangle(1.0, 1.0, angle=0.3),
-        spacing=1 / 50,
-        m=M,
-        material=ConductivityTensor.isotropic(1.0),
-        heat_capacity=1.0,
-        surface="extrapolated",
-    )
-    transient.run(scene, lambda x, y: x, [0.1, 1.0], tolerance=1e-2)
 
 
 def measured(run: Any, exact: Array, extra: dict[str, float] | None = None) -> Measurement:
@@ -216,7 +201,9 @@ CASES = (
             "With its rim following the exact field a disc has the closed form at second order in "
             "space and in time, and its heat balances to rounding."
         ),
-        methods=(Method("bond/lattice", "bond", partial(spread, Heat()), LADDER, warm_up),),
+        methods=(
+            Method("bond/lattice", "bond", partial(spread, Heat()), LADDER, conduction_in_time),
+        ),
         checks=(
             Check(
                 "bond/lattice",
@@ -252,7 +239,7 @@ CASES = (
             "and particles that store their strip's heat; the other treatments are of first."
         ),
         methods=tuple(
-            Method(f"bond/{s}", "bond", partial(decay, Heat(s)), levels, warm_up)
+            Method(f"bond/{s}", "bond", partial(decay, Heat(s)), levels, conduction_in_time)
             for s, levels in (("extrapolated", TURNS), ("volume", OTHERS), ("none", OTHERS))
         ),
         checks=(
@@ -288,9 +275,11 @@ CASES = (
                 "bond",
                 partial(cool, Heat()),
                 {Level.QUICK: (20,), **CRACKS},
-                warm_up,
+                conduction_in_time,
             ),
-            Method("bond/volume", "bond", partial(cool, Heat("volume")), CRACKS, warm_up),
+            Method(
+                "bond/volume", "bond", partial(cool, Heat("volume")), CRACKS, conduction_in_time
+            ),
         ),
         checks=(
             Check(

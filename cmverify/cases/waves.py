@@ -8,13 +8,13 @@ together, sin²(ω Δt/2) = λ(k) Δt²/4, to rounding, with λ from the energy 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measurement, Method, OrderBand
-from cmverify.cases.common import bond_energies, materials
+from cmverify.cases.common import bond_energies, materials, warm
 from cmverify.judge.norms import relative_l2
 
 DENSITY = 1.0
@@ -124,23 +124,6 @@ def disperse(problem: Dispersion, n: int) -> Measurement:
             ),
         ),
     )
-
-
-@cache
-def warm_up() -> None:
-    """Compile what waves need."""
-    from solver import ElasticTensor, Scene, rectangle, waves
-
-    for surface in ("volume", "extrapolated"):
-        scene = Scene(
-            region=rectangle(1.0, 1.0),
-            spacing=0.1,
-            m=3,
-            material=ElasticTensor(materials.isotropic(0.2, "strain")),
-            density=1.0,
-            surface=surface,
-        )
-        waves.run(scene, lambda x, y: np.stack([x * x, y], -1), 0.1)
 
 
 # ---- Lamb's problem ------------------------------------------------------------------------
@@ -307,9 +290,9 @@ CASES = (
             "and approach Christoffel's speeds at second order."
         ),
         methods=(
-            Method("bond/m = 5", "bond", partial(disperse, Dispersion(5)), EVERY, warm_up),
-            Method("bond/m = 3", "bond", partial(disperse, Dispersion(3)), LATER, warm_up),
-            Method("bond/m = 7", "bond", partial(disperse, Dispersion(7)), LATER, warm_up),
+            Method("bond/m = 5", "bond", partial(disperse, Dispersion(5)), EVERY, warm.waves),
+            Method("bond/m = 3", "bond", partial(disperse, Dispersion(3)), LATER, warm.waves),
+            Method("bond/m = 7", "bond", partial(disperse, Dispersion(7)), LATER, warm.waves),
         ),
         checks=(
             *(
@@ -349,7 +332,7 @@ CASES = (
             "thirtieth of a cell of the body's own."
         ),
         methods=tuple(
-            Method(f"bond/{s}", "bond", partial(reflect, Lamb(s)), REFLECT, warm_up)
+            Method(f"bond/{s}", "bond", partial(reflect, Lamb(s)), REFLECT, warm.waves)
             for s in ("extrapolated", "volume", "none")
         ),
         checks=tuple(
@@ -383,7 +366,7 @@ CASES = (
             "Rayleigh's wave, which lives on the surface, is right where the surface is."
         ),
         methods=tuple(
-            Method(f"bond/{s}", "bond", partial(push, Lamb(s)), levels, warm_up)
+            Method(f"bond/{s}", "bond", partial(push, Lamb(s)), levels, warm.waves)
             for s, levels in (("extrapolated", LAMB), ("volume", SLOWER), ("none", SLOWER))
         ),
         checks=(

@@ -27,8 +27,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cmverify.case import Case, Check, Curve, Level, LinePlot, Measurement, Method
+from cmverify.cases.common import warm
 
-from .running import DESCRIPTIONS, WARM, Led, lead
+from .running import DESCRIPTIONS, Led, lead
 
 if TYPE_CHECKING:
     from solver import Scene
@@ -162,15 +163,11 @@ def bond(specimen: Specimen, n: int) -> Measurement:
     )  # fmt: skip
 
 
-def _warm() -> None:
-    Specimen().led(1, max_solves=WARM)
-
-
 def _method(degrees: float, surface: Surface = "volume", **ladder: tuple[int, ...]) -> Method:
     levels = {level: ladder.get(level.value, ()) for level in Level}
     run: Callable[[int], Measurement] = partial(bond, Specimen(degrees, surface))
     name = f"ζ = {degrees:g}°" + (", extrapolated" if surface == "extrapolated" else "")
-    return Method(name, "bond", run, levels, _warm)
+    return Method(name, "bond", run, levels, warm.growth)
 
 
 _STRAIGHT = _method(0.0, quick=(2,), standard=(2, 3, 5), paper=(2, 3, 5))

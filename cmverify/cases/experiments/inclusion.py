@@ -27,8 +27,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cmverify.case import Case, Check, Curve, Level, LinePlot, Measurement, Method, OrderBand
+from cmverify.cases.common import warm
 
-from .running import DESCRIPTIONS, WARM, Led, lead, unmirrored
+from .running import DESCRIPTIONS, Led, lead, unmirrored
 
 if TYPE_CHECKING:
     from solver import Scene
@@ -163,14 +164,10 @@ def bond(plate: Plate, n: int) -> Measurement:
     )
 
 
-def _warm() -> None:
-    Plate(m=3).led(18, max_solves=WARM)
-
-
 def _method(name: str, plate: Plate, **ladder: tuple[int, ...]) -> Method:
     levels = {level: ladder.get(level.value, ()) for level in Level}
     run: Callable[[int], Measurement] = partial(bond, plate)
-    return Method(name, "bond", run, levels, _warm)
+    return Method(name, "bond", run, levels, warm.growth)
 
 
 _METHODS = (

@@ -27,8 +27,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cmverify.case import Case, Check, Curve, Level, LinePlot, Measurement, Method
+from cmverify.cases.common import warm
 
-from .running import DESCRIPTIONS, WARM, Led, events, lead
+from .running import DESCRIPTIONS, Led, events, lead
 
 if TYPE_CHECKING:
     from solver import Scene
@@ -162,14 +163,10 @@ def bond(plate: Plate, n: int) -> Measurement:
     )  # fmt: skip
 
 
-def _warm() -> None:
-    Plate(True, m=3).led(2, max_solves=WARM)
-
-
 def _method(name: str, plate: Plate, **ladder: tuple[int, ...]) -> Method:
     levels = {level: ladder.get(level.value, ()) for level in Level}
     run: Callable[[int], Measurement] = partial(bond, plate)
-    return Method(name, "bond", run, levels, _warm)
+    return Method(name, "bond", run, levels, warm.growth)
 
 
 _METHODS = (

@@ -19,9 +19,6 @@ if TYPE_CHECKING:
 SHARES = (0.05, 0.35, 0.7, 1.0)
 # A moment is kept when this much more has been dissipated than at the last one.
 _GROWTH = 1.15
-#: Solves that compile all that a run needs.
-WARM = 8
-
 DESCRIPTIONS = {
     "balance": "work − stored − dissipated − excess, relative to the work",
     "undercut": "share of G × crack length that broken bonds have not dissipated",

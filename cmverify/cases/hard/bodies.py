@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cache, partial
+from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from cmverify.case import Array, Check, Level, Measurement, Method, OrderBand
-from cmverify.cases.common import adapters
+from cmverify.cases.common import adapters, warm
 from cmverify.judge.norms import relative_l2, worst
 
 if TYPE_CHECKING:
@@ -51,16 +51,6 @@ class Solid:
     calibration: Calibration = "lattice"
     m: float = 5
     distortion: float = 1.0
-
-
-@cache
-def warm_up() -> None:
-    """Compile the kernels: with and without rotations. (No seconds are reported.)"""
-    from solver import ElasticTensor
-
-    for nu in (0.2, 1 / 3):
-        voigt = ElasticTensor.isotropic(1.0, nu).voigt
-        solve(voigt, field_of(voigt, (1,)), 20)
 
 
 def field_of(voigt: Array, degrees: tuple[int, ...]) -> PolynomialDisplacement:
@@ -151,7 +141,7 @@ class Expected:
         """The solid as a method."""
         run = partial(measure, self.solid)
         name = f"bond/{self.solid.calibration} {self.name}"
-        return Method(name, "bond", run, self.ladder, warm_up)
+        return Method(name, "bond", run, self.ladder, warm.statics)
 
     @property
     def checks(self) -> tuple[Check, ...]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cmverify.case import Case, Check, Level, Measurement, Method, OrderBand
-from cmverify.cases.common import adapters, bond_energies, materials
+from cmverify.cases.common import adapters, bond_energies, materials, warm
 from cmverify.cases.hard import bodies
 from cmverify.judge.norms import relative_l2, worst
 
@@ -42,12 +42,6 @@ class Conductor:
         """The m without non-negative bonds: too few directions near the better conductor."""
         steep = (self.ratio, self.angle, self.calibration) == (1000.0, np.pi / 8, "positive")
         return (3,) if steep else ()
-
-
-@cache
-def warm_up() -> None:
-    """Compile the kernels of conduction."""
-    _solve(Conductor(34.0, 0.0, "lattice"), 20, 3, lambda x, y: x)
 
 
 def _solve(conductor: Conductor, n: int, m: int, temperature: Any) -> Any:
@@ -166,7 +160,7 @@ CASES = (
             "family is too small for non-negative bonds, the refusal names the m that will do."
         ),
         methods=tuple(
-            Method(c.name, "bond", partial(measure, c), LADDER, warm_up) for c in CONDUCTORS
+            Method(c.name, "bond", partial(measure, c), LADDER, warm.conduction) for c in CONDUCTORS
         ),
         checks=tuple(check for c in CONDUCTORS for check in _checks(c)),
         quantities={

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cmverify.case import Case, Check, Level, Measurement, Method
-from cmverify.cases.common import adapters, materials
+from cmverify.cases.common import adapters, materials, warm
 from cmverify.cases.hard import broken
 from cmverify.cases.hard.tensors import tensor
 from cmverify.judge.norms import relative_l2
@@ -43,13 +43,6 @@ def _elastic(make: Callable[[], Any]) -> Callable[[], Material]:
     from solver import ElasticTensor
 
     return lambda: ElasticTensor(make())
-
-
-@cache
-def warm_up() -> None:
-    """Compile what damaged bodies need, with and without rotations, and in conduction."""
-    for body in (BODIES[0], BODIES[1], BODIES[-1]):
-        solve(body, 16)
 
 
 def solve(body: Body, n: int) -> Measurement:
@@ -153,7 +146,9 @@ CASES = (
             "of the bonds that are left in balance; where damage makes a direction of negative "
             "energy the solver says so instead of returning numbers."
         ),
-        methods=tuple(Method(_name(b), "bond", partial(solve, b), LADDER, warm_up) for b in BODIES),
+        methods=tuple(
+            Method(_name(b), "bond", partial(solve, b), LADDER, warm.both) for b in BODIES
+        ),
         checks=tuple(check for b in BODIES for check in _checks(b)),
         quantities={
             "refused": "1 if a direction of negative energy was met (NegativeCurvatureError)",

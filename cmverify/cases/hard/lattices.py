@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from cmverify.case import Case, Check, Level, Measurement, Method
-from cmverify.cases.common import adapters
+from cmverify.cases.common import adapters, warm
 from cmverify.cases.hard import bodies
 from cmverify.cases.hard.tensors import tensor
 from cmverify.judge.norms import worst
@@ -144,7 +144,7 @@ CASES = (
             "of the body's edge relative to the lattice."
         ),
         methods=tuple(
-            Method(f"bond/lattice {s.name}", "bond", partial(fit, s), LADDER, bodies.warm_up)
+            Method(f"bond/lattice {s.name}", "bond", partial(fit, s), LADDER, warm.statics)
             for s in SETTINGS
         ),
         checks=tuple(
@@ -187,7 +187,7 @@ CASES = (
         tags=("hard", "elasticity"),
         shows="Units do not matter: the solution changes by rounding, iterations hardly.",
         methods=tuple(
-            Method(f"bond/lattice {u.name}", "bond", partial(rescale, u), LADDER, bodies.warm_up)
+            Method(f"bond/lattice {u.name}", "bond", partial(rescale, u), LADDER, warm.statics)
             for u in UNITS
         ),
         checks=tuple(

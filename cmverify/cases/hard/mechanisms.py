@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cmverify.case import Array, Case, Check, Level, Measurement, Method
-from cmverify.cases.common import adapters
+from cmverify.cases.common import adapters, warm
 from cmverify.cases.hard import broken
 from cmverify.judge.norms import relative_l2
 
@@ -126,12 +126,6 @@ def treat(body: Loose, n: int) -> Measurement:
     return Measurement(s.unknowns, found, statistics=adapters.solver_statistics(s))
 
 
-@cache
-def warm_up() -> None:
-    """Compile what mechanisms need."""
-    treat(BODIES[0], 20)
-
-
 BODIES = (
     Loose("no bond", lonely(0), "left free", alone=True),
     Loose("one bond", lonely(1), "too few bonds left", alone=True),
@@ -153,7 +147,7 @@ CASES = (
             "exactly the loose particles have no values and the rest is solved."
         ),
         methods=tuple(
-            Method(f"bond/lattice {b.name}", "bond", partial(treat, b), LADDER, warm_up)
+            Method(f"bond/lattice {b.name}", "bond", partial(treat, b), LADDER, warm.statics)
             for b in BODIES
         ),
         checks=tuple(

@@ -16,7 +16,7 @@ from itertools import islice
 import numpy as np
 
 from cmverify.case import Array, Case, Check, Level, Measurement, Method
-from cmverify.cases.common import bond_energies
+from cmverify.cases.common import bond_energies, warm
 from cmverify.cases.hard import bodies
 from cmverify.judge.norms import worst
 
@@ -110,7 +110,7 @@ CASES = (
             "confirmed by another method and what it recommends instead is exact."
         ),
         methods=tuple(
-            Method(m, "bond", partial(population, m.split("/")[1]), LADDER, bodies.warm_up)
+            Method(m, "bond", partial(population, m.split("/")[1]), LADDER, warm.statics)
             for m in METHODS
         ),
         checks=tuple(

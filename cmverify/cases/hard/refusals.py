@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from cmverify.case import Array, Case, Check, Level, Measurement, Method
-from cmverify.cases.common import bond_energies, materials
+from cmverify.cases.common import bond_energies, materials, warm
 from cmverify.cases.hard import bodies
 from cmverify.cases.hard.tensors import forty_to_one, tensor
 from cmverify.judge.norms import worst
@@ -148,7 +148,7 @@ CASES = (
             "message recommends then gives the exact field."
         ),
         methods=tuple(
-            Method(_NAMES[r.name], "bond", partial(refuse, r), LADDER, bodies.warm_up)
+            Method(_NAMES[r.name], "bond", partial(refuse, r), LADDER, warm.statics)
             for r in REFUSALS
         ),
         checks=tuple(

@@ -7,8 +7,9 @@ from functools import partial
 from typing import Any
 
 from cmverify.case import Case, Check, Level, Method
+from cmverify.cases.common import warm
 from cmverify.cases.kinking.measure import Study, study
-from cmverify.cases.kinking.problem import Kink, grow_kink
+from cmverify.cases.kinking.problem import Kink
 
 LADDER = {Level.QUICK: (30,), Level.STANDARD: (30, 60), Level.PAPER: (30, 60, 120)}
 #: One thing changed at a time, at a/60; m is changed with the number of bonds that break together.
@@ -46,10 +47,6 @@ QUANTITIES = {
 }
 
 
-def _warm() -> None:
-    grow_kink(Kink("silicon", 45.0, 16))
-
-
 def _case(material: str, name: str, shows: str) -> Case:
     kink = Kink(material, 0.0, 0)
     main = "bond/lattice"
@@ -69,14 +66,14 @@ def _case(material: str, name: str, shows: str) -> Case:
         tags=("kinking", "fracture"),
         shows=shows,
         methods=(
-            Method(main, "bond", partial(study, Study(kink, extra=True)), LADDER, _warm),
+            Method(main, "bond", partial(study, Study(kink, extra=True)), LADDER, warm.growth),
             *(
                 Method(
                     f"bond/{label}",
                     "bond",
                     partial(study, Study(replace(kink, **change))),
                     VARIED,
-                    _warm,
+                    warm.growth,
                 )
                 for label, change in VARIATIONS.items()
             ),
@@ -88,7 +85,7 @@ def _case(material: str, name: str, shows: str) -> Case:
                     Study(replace(kink, control="fixed"), mixities=(0.0, 45.0, 90.0)),
                 ),
                 VARIED,
-                _warm,
+                warm.growth,
             ),
         ),
         checks=(

@@ -19,6 +19,7 @@ from cmverify.case import (
     Method,
     OrderBand,
 )
+from cmverify.cases.common import warm
 from cmverify.cases.common.adapters import stopwatch
 from cmverify.cases.common.materials import isotropic, orthotropic, turned
 from cmverify.cases.modes.pairing import clusters, pair
@@ -153,10 +154,6 @@ def _ladder(plate: Plate) -> dict[Level, tuple[int, ...]]:
     }
 
 
-def _warm(plate: Plate) -> None:
-    bond(plate, 26)
-
-
 QUANTITIES = {
     "frequency": "largest relative error of the first ten elastic frequencies, paired by shape",
     "first": "relative error of the lowest elastic frequency",
@@ -216,7 +213,7 @@ CASES = (
                 "bond",
                 partial(bond, plate),
                 _ladder(plate),
-                partial(_warm, plate),
+                partial(warm.vibration, plate.surface),
             )
             for plate in PLATES
         ),

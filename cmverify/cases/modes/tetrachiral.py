@@ -27,6 +27,7 @@ from cmverify.case import (
     Method,
     OrderBand,
 )
+from cmverify.cases.common import warm
 from cmverify.cases.common.adapters import stopwatch
 from cmverify.cases.common.materials import tetrachiral
 from cmverify.cases.modes.pairing import Pairing, pair
@@ -214,11 +215,6 @@ def blocks(clamped: bool, n: int) -> Measurement:
     )
 
 
-def _warm(m: int, clamp: Clamp, surface: Surface) -> None:
-    reference(clamp != "free")
-    bond(m, clamp, surface, 28)
-
-
 LADDER = {Level.QUICK: (14, 24), Level.STANDARD: (14, 28, 56), Level.PAPER: (14, 28, 56, 112)}
 BESIDE = {Level.QUICK: (), Level.STANDARD: (14, 28, 56), Level.PAPER: (28, 56, 112)}
 # Horizon δ ≈ 5a/4, m = 3 … 8: the nearest whole grids, 25ℓ/δ = 22.36.
@@ -244,7 +240,7 @@ def _method(
         "bond",
         partial(bond, m, clamp, surface, **kind),
         ladder,
-        partial(_warm, m, clamp, surface),
+        partial(warm.vibration, surface),
     )
 
 
@@ -288,7 +284,7 @@ CASES = (
                 "bond",
                 fixed_horizon,
                 {Level.QUICK: (), Level.STANDARD: (67, 112), Level.PAPER: tuple(HORIZON.values())},
-                partial(_warm, 5, "free", "extrapolated"),
+                warm.vibration,
             ),
             _blocks(False),
         ),

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cache, partial
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from cmverify.case import Array, Check, Level, Measurement, Method, OrderBand
+from cmverify.cases.common import warm
 from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
@@ -60,33 +61,6 @@ def held(
         Support.where(nearest(*first), u1=component(0), u2=component(1)),
         Support.where(nearest(*second), u2=component(1)),
     ]
-
-
-@cache
-def warm_up(treatment: Treatment, conductive: bool = False) -> None:
-    """Compile what a treatment needs, below and above the 2,000 unknowns of direct solvers."""
-    from solver import ConductivityTensor, ElasticTensor, Load, Scene, Support, rectangle
-
-    for n in (10, 48 if conductive else 28):
-        common: dict[str, Any] = {
-            "region": rectangle(1.0, 1.0),
-            "spacing": 1.0 / n,
-            "surface": treatment,
-        }
-        if conductive:
-            Scene(
-                material=ConductivityTensor.isotropic(1.0),
-                supports=[Support.where(nearest(0.0, 0.0), temperature=0.0)],
-                loads=[Load.flux((1.0, 0.0))],
-                **common,
-            ).solve()
-        else:
-            Scene(
-                material=ElasticTensor.isotropic(1.0, 0.2),
-                supports=held((0.0, 0.0), (0.25, 0.0)),
-                loads=[Load.stress((1.0, 0.0, 0.0))],
-                **common,
-            ).solve()
 
 
 def at_points(
@@ -169,7 +143,7 @@ def methods(
             "bond",
             partial(run, treatment, cells),
             ladder,
-            partial(warm_up, treatment, conductive),
+            partial(warm.statics, treatment, conductive),
         )
         for treatment, cells, name in settings
     )
