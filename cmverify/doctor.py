@@ -87,7 +87,7 @@ def _cache() -> Finding:
         return Finding("ok", "Numba cache", str(folder))
     where = f"{folder} is not writable" if folder else "no folder can be written to"
     hint = "every process compiles for a minute; set NUMBA_CACHE_DIR to a folder you may write to"
-    return Finding("problem", "Numba cache", f"{where}: {hint}")
+    return Finding("note", "Numba cache", f"{where}: {hint}")
 
 
 def _gmsh() -> Finding:
