@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import psutil
@@ -38,7 +39,8 @@ def started(out, tmp_path):
     command = [sys.executable, str(program), "run", "toy", "sleeping", "--jobs", "2"]
     process = subprocess.Popen(
         [*command, "--out", str(out)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-        text=True, start_new_session=True, env={**os.environ, "PYTHONPATH": str(ROOT)},
+        text=True, start_new_session=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONFAULTHANDLER": "1"},
     )  # fmt: skip
     deadline = time.monotonic() + 60
     while len(list(out.glob("results/toy/*/*.json"))) < 2 and time.monotonic() < deadline:
@@ -58,8 +60,15 @@ def test_a_run_that_is_ended_leaves_no_process_and_can_be_reported(tmp_path, nam
     else:
         process.send_signal(getattr(signal, name))
     # The pipe closes only when the last process that holds it has ended.
-    said, _ = process.communicate(timeout=30)
-    _, left = psutil.wait_procs(children, timeout=20)
+    try:
+        said, _ = process.communicate(timeout=120)
+    except subprocess.TimeoutExpired:
+        process.send_signal(signal.SIGABRT)  # says where every thread is
+        for child in children:
+            with suppress(psutil.NoSuchProcess):
+                child.kill()
+        pytest.fail(f"it does not end: {process.communicate(timeout=60)[0]}")
+    _, left = psutil.wait_procs(children, timeout=60)
     assert not left
     assert "Traceback" not in said
     if name != "SIGKILL":
