@@ -2,7 +2,8 @@
 
 All are sums over bonds, done one offset at a time for the whole body. Near an edge (a prescribed
 layer included) families lack bonds, and stress and flux there are those of the bonds that exist;
-with the surface treatment ``extrapolated`` bonds that end at the surface stand in for them.
+with the surface treatment ``extrapolated`` bonds that end at the surface stand in for them. On the
+edge itself ask `edge_strain` (or `edge_gradient`): they fit the displacements around.
 """
 
 from __future__ import annotations
@@ -16,10 +17,26 @@ from numpy.typing import NDArray
 
 from . import bonds as bond_room
 from .arrays import Array
+from .edge_recovery import edge_gradient, edge_strain
 from .material import Family, Moduli, PolarModuli
 from .material.physics import ELASTICITY, ELECTRICITY, HEAT, Physics
 from .material.strains import directions, elongations
 from .state import State
+
+__all__ = [
+    "couple_stress",
+    "current_density",
+    "damage",
+    "displacement_gradient",
+    "edge_gradient",
+    "edge_strain",
+    "fields",
+    "flux",
+    "joule_heat",
+    "macrorotation",
+    "strain_energy_density",
+    "stress",
+]
 
 
 @dataclass(frozen=True)
