@@ -92,6 +92,7 @@ class _Ends:
     particle: NDArray[np.int64]
     offset: NDArray[np.int64]
     weight: Array
+    strength: Array
     length: Array
     difference: Array
     strains: Array
@@ -120,7 +121,8 @@ def _ends(solution: State) -> _Ends | None:
     if body.eigenstrain is not None:
         strains = strains - body.eigenstrain.of_ended(ended)
     weight = family.weight[ended.offset] * family.cell_area
-    return _Ends(ended.particle, ended.offset, weight, ended.length, difference, strains)
+    strength = np.ones(len(ended)) if ended.factor is None else ended.factor
+    return _Ends(ended.particle, ended.offset, weight, strength, ended.length, difference, strains)
 
 
 def _aside(solution: State, result: Array) -> Array:
@@ -146,7 +148,8 @@ def _force(pair: _Pair, moduli: Moduli) -> Array:
 def _ended_force(ends: _Ends, moduli: Moduli, family: Family) -> Array:
     """The same of the bonds that end at the surface, shape (2, bonds)."""
     along = directions(moduli.strains, family.normal[ends.offset].T)
-    return np.einsum("ak,aik,ak->ik", moduli.stiffness[:, ends.offset], along, ends.strains)
+    stiffness = ends.strength * moduli.stiffness[:, ends.offset]
+    return np.einsum("ak,aik,ak->ik", stiffness, along, ends.strains)
 
 
 def stress(solution: State, rule: Literal["plane", "family"] | None = None) -> Array:
@@ -308,7 +311,7 @@ def strain_energy_density(solution: State) -> Array:
     if (ends := _ends(solution)) is not None:
         o = ends.offset
         density = length[o] * (moduli.stiffness[:, o] * ends.strains**2).sum(axis=0)
-        ends.add(0.25 * ends.weight * density, result)
+        ends.add(0.25 * ends.weight * ends.strength * density, result)
     return _aside(solution, result)
 
 

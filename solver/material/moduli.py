@@ -92,6 +92,10 @@ class Moduli(ABC):
     def absolute(self) -> Moduli:
         """The same with every negative modulus turned positive."""
 
+    @abstractmethod
+    def scaled(self, factor: Array) -> Moduli:
+        """The same with a factor on the moduli of each bond, shape (family size,)."""
+
     def pair_length(self, family: Family) -> Array:
         """L of the pair's energy, shape (family size,), m or 1."""
         return pair_length(family, self.physics)
@@ -144,6 +148,9 @@ class ElasticModuli(Moduli):
 
     def absolute(self) -> ElasticModuli:
         return ElasticModuli(np.abs(self.normal), np.abs(self.shear))
+
+    def scaled(self, factor: Array) -> ElasticModuli:
+        return ElasticModuli(factor * self.normal, factor * self.shear)
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,6 +216,9 @@ class ConductiveModuli(Moduli):
 
     def absolute(self) -> ConductiveModuli:
         return type(self)(np.abs(self.conductivity))
+
+    def scaled(self, factor: Array) -> ConductiveModuli:
+        return type(self)(factor * self.conductivity)
 
 
 class ElectricModuli(ConductiveModuli):
