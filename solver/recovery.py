@@ -393,7 +393,7 @@ def couple_stress(solution: State) -> Array:
         result += pair.normal[:, None] * (share * pair.strength * pair.strains[place])
     if (ends := _ends(solution)) is not None:
         o = ends.offset
-        share = 0.5 * ends.weight * family.length[o] * bending[o]
+        share = 0.5 * ends.weight * ends.strength * family.length[o] * bending[o]
         ends.add(family.normal[o].T * (share * ends.strains[place]), result)
     return _aside(solution, result.T)
 

@@ -9,8 +9,8 @@ the energy of a pair,
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -92,9 +92,11 @@ class Moduli(ABC):
     def absolute(self) -> Moduli:
         """The same with every negative modulus turned positive."""
 
-    @abstractmethod
-    def scaled(self, factor: Array) -> Moduli:
-        """The same with a factor on the moduli of each bond, shape (family size,)."""
+    def scaled(self, factor: Array) -> Self:
+        """The same with a factor on all moduli of each bond, shape (family size,)."""
+        given: Any = self
+        moduli = {item.name: factor * getattr(self, item.name) for item in fields(given)}
+        return type(self)(**moduli)
 
     def pair_length(self, family: Family) -> Array:
         """L of the pair's energy, shape (family size,), m or 1."""
@@ -148,9 +150,6 @@ class ElasticModuli(Moduli):
 
     def absolute(self) -> ElasticModuli:
         return ElasticModuli(np.abs(self.normal), np.abs(self.shear))
-
-    def scaled(self, factor: Array) -> ElasticModuli:
-        return ElasticModuli(factor * self.normal, factor * self.shear)
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,9 +215,6 @@ class ConductiveModuli(Moduli):
 
     def absolute(self) -> ConductiveModuli:
         return type(self)(np.abs(self.conductivity))
-
-    def scaled(self, factor: Array) -> ConductiveModuli:
-        return type(self)(factor * self.conductivity)
 
 
 class ElectricModuli(ConductiveModuli):
