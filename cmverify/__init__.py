@@ -41,6 +41,7 @@ __all__ = [
     "Load",
     "MechanismError",
     "NegativeCurvatureError",
+    "Piezoresistance",
     "PolarTensor",
     "Programme",
     "Region",
@@ -59,6 +60,7 @@ __all__ = [
     "polygon",
     "recovery",
     "rectangle",
+    "strained",
     "transient",
     "waves",
 ]

@@ -1,5 +1,7 @@
 """The stored references: what they are, with which arguments they are made, what they cite."""
 
+from typing import Any
+
 from references.generators import (
     MATERIALS,
     compact_tension_by_pins,
@@ -13,6 +15,7 @@ from references.generators import (
     tetrachiral_clamped,
     tetrachiral_free,
 )
+from references.generators_coupled import strained_plate
 from references.provenance import Reference
 
 _PAPER = "V. Diana, Anisotropic Continuum-Molecular Models, Arch. Comput. Methods Eng. (2022)"
@@ -30,6 +33,19 @@ def _kinks(material: str) -> Reference:
         kink_factors,
         {"material": material, "degrees": degrees},
         spot={"degrees": degrees[4:5]},
+        axis="degrees",
+    )
+
+
+def _strained(material: str, **arguments: Any) -> Reference:
+    given = {"degrees": [0.0, 90.0], "gauge": 4.0, "probe": 1.6, "size": 0.02, "exponent": 4}
+    return Reference(
+        f"strained-plate-{material}",
+        f"Piezoresistive plate with a hole under tension, {material}: drop and its change",
+        _PAPER + ", Sect. 5; tensors: Eqs. 108, 173",
+        strained_plate,
+        {"material": material, **given, **arguments},
+        spot={"degrees": [90.0]},
         axis="degrees",
     )
 
@@ -135,5 +151,7 @@ def catalogue() -> dict[str, Reference]:
                 "elements": 20,
             },
         ),
+        _strained("isotropic", resistivities=[1.0, 1.0], angle=0.0, resistive=False, actual=False),
+        _strained("bone", resistivities=[170.0, 540.0], angle=0.5, resistive=True, actual=True),
     ]
     return {entry.name: entry for entry in entries}

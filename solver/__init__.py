@@ -25,6 +25,7 @@ from .material import (
     Family,
     Fourfold,
     Influence,
+    Piezoresistance,
     PolarTensor,
     TwoHarmonic,
     UniformShear,
@@ -32,6 +33,7 @@ from .material import (
 from .problem import Discretisation, Load, Support
 from .scene import Scene
 from .solution import Solution, Statistics
+from .strained import strained
 
 __all__ = [
     "CalibrationError",
@@ -50,6 +52,7 @@ __all__ = [
     "Load",
     "MechanismError",
     "NegativeCurvatureError",
+    "Piezoresistance",
     "PolarTensor",
     "Programme",
     "Region",
@@ -68,6 +71,7 @@ __all__ = [
     "polygon",
     "recovery",
     "rectangle",
+    "strained",
     "transient",
     "waves",
 ]

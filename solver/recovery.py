@@ -2,7 +2,8 @@
 
 All are sums over bonds, done one offset at a time for the whole body. Near an edge (a prescribed
 layer included) families lack bonds, and stress and flux there are those of the bonds that exist;
-with the surface treatment ``extrapolated`` bonds that end at the surface stand in for them.
+with the surface treatment ``extrapolated`` bonds that end at the surface stand in for them. On the
+edge itself ask `edge_strain` (or `edge_gradient`): they fit the displacements around.
 """
 
 from __future__ import annotations
@@ -16,10 +17,26 @@ from numpy.typing import NDArray
 
 from . import bonds as bond_room
 from .arrays import Array
+from .edge_recovery import edge_gradient, edge_strain
 from .material import Family, Moduli, PolarModuli
 from .material.physics import ELASTICITY, ELECTRICITY, HEAT, Physics
 from .material.strains import directions, elongations
 from .state import State
+
+__all__ = [
+    "couple_stress",
+    "current_density",
+    "damage",
+    "displacement_gradient",
+    "edge_gradient",
+    "edge_strain",
+    "fields",
+    "flux",
+    "joule_heat",
+    "macrorotation",
+    "strain_energy_density",
+    "stress",
+]
 
 
 @dataclass(frozen=True)
@@ -75,6 +92,7 @@ class _Ends:
     particle: NDArray[np.int64]
     offset: NDArray[np.int64]
     weight: Array
+    strength: Array
     length: Array
     difference: Array
     strains: Array
@@ -103,7 +121,8 @@ def _ends(solution: State) -> _Ends | None:
     if body.eigenstrain is not None:
         strains = strains - body.eigenstrain.of_ended(ended)
     weight = family.weight[ended.offset] * family.cell_area
-    return _Ends(ended.particle, ended.offset, weight, ended.length, difference, strains)
+    strength = np.ones(len(ended)) if ended.factor is None else ended.factor
+    return _Ends(ended.particle, ended.offset, weight, strength, ended.length, difference, strains)
 
 
 def _aside(solution: State, result: Array) -> Array:
@@ -129,7 +148,8 @@ def _force(pair: _Pair, moduli: Moduli) -> Array:
 def _ended_force(ends: _Ends, moduli: Moduli, family: Family) -> Array:
     """The same of the bonds that end at the surface, shape (2, bonds)."""
     along = directions(moduli.strains, family.normal[ends.offset].T)
-    return np.einsum("ak,aik,ak->ik", moduli.stiffness[:, ends.offset], along, ends.strains)
+    stiffness = ends.strength * moduli.stiffness[:, ends.offset]
+    return np.einsum("ak,aik,ak->ik", stiffness, along, ends.strains)
 
 
 def stress(solution: State, rule: Literal["plane", "family"] | None = None) -> Array:
@@ -291,7 +311,7 @@ def strain_energy_density(solution: State) -> Array:
     if (ends := _ends(solution)) is not None:
         o = ends.offset
         density = length[o] * (moduli.stiffness[:, o] * ends.strains**2).sum(axis=0)
-        ends.add(0.25 * ends.weight * density, result)
+        ends.add(0.25 * ends.weight * ends.strength * density, result)
     return _aside(solution, result)
 
 
@@ -373,7 +393,7 @@ def couple_stress(solution: State) -> Array:
         result += pair.normal[:, None] * (share * pair.strength * pair.strains[place])
     if (ends := _ends(solution)) is not None:
         o = ends.offset
-        share = 0.5 * ends.weight * family.length[o] * bending[o]
+        share = 0.5 * ends.weight * ends.strength * family.length[o] * bending[o]
         ends.add(family.normal[o].T * (share * ends.strains[place]), result)
     return _aside(solution, result.T)
 

@@ -161,6 +161,14 @@ def _coupling_number() -> dict[str, float]:
     return {"most": float(sp.limit(number, nu, -1)), "usual": float(number.subs(nu, 0.2))}
 
 
+@cache
+def _longer() -> dict[str, float]:
+    """What the actual length takes off a bond's gauge: slope of Eq. 119's 1/length^2 at s = 0."""
+    s = sp.Symbol("s")
+    along = circle_integral(COS**4) / circle_integral(COS**2)
+    return {"off": -float(sp.diff((1 + s) ** -2, s).subs(s, 0)), "share": 100 * float(along)}
+
+
 _R, _D, _I = Verdict.RIGHT, Verdict.DEFINITION, Verdict.INCOMPLETE
 
 ENTRIES = [
@@ -199,6 +207,12 @@ ENTRIES = [
           lambda: _bending()[:1], _bending_names, "curvature energy of a horizon, n = 2"),
     Entry("181", "bending micromodulus, axis 2", _R, (Form("3*(3*E32 - E31)/(pi*h*delta**3)"),),
           lambda: _bending()[1:], _bending_names, "curvature energy of a horizon, n = 2"),
+    Entry("Sect. 5 (piezoresistivity)", "k_e as a function of a deformation measure", Verdict.OPEN,
+          (), tuple,
+          needs="the measure and the law: conductivity or resistivity linear in the stretch, over "
+          "which length",
+          effect="a gauge a of the bonds shows as {share:.0f} % of it along a uniaxial strain; the "
+          "actual length in Eqs. 118 and 119 takes {off:.0f} off a", measure=_longer),
     Entry("Sect. 5 (chirality)", "k_n, k_t, k_b are said to include chiral effects", _I,
           (Form("knt", "0", off="knt"),), _dilation, lambda: names("knt"),
           "what couples a dilation to the points' rotation, in any bond",

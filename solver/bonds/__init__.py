@@ -2,6 +2,7 @@
 
 from .bonds import Bonds, damage
 from .ended import EndedBonds
+from .factors import Factors
 from .volume_method import Surface, check_surface
 
-__all__ = ["Bonds", "EndedBonds", "Surface", "check_surface", "damage"]
+__all__ = ["Bonds", "EndedBonds", "Factors", "Surface", "check_surface", "damage"]

@@ -22,6 +22,7 @@ from ..errors import NoOutlineError, SceneError
 from ..geometry import Body, Crack, CrackSet, Frame, Lattice, Outline
 from ..material import Family
 from .ended import EndedBonds
+from .factors import Factors
 from .volume_method import Surface, full_volume, volume_factor
 
 # Share of a length within which two are equal.
@@ -150,6 +151,16 @@ class Bonds:
         result = copy(self)
         result.__dict__.pop("column", None)
         result.special, result.strengths = special, factors
+        return result
+
+    def scaled(self, factors: Factors) -> Bonds:
+        """These bonds with a factor on each: every particle becomes special."""
+        result = copy(self)
+        result.__dict__.pop("column", None)
+        result.special = np.arange(self.lattice.count)
+        result.strengths = self.strengths_of(result.special) * factors.whole
+        if self.ended is not None:
+            result.ended = self.ended.scaled(factors)
         return result
 
     def without_ends(self, particles: Indices) -> Bonds:

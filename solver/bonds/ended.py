@@ -46,6 +46,7 @@ import numpy as np
 from ..arrays import Array, Indices, Mask
 from ..geometry import Lattice, Outline
 from ..material import Family
+from .factors import Factors
 
 # Share of the spacing below which a bond's stiffness grows no more, and a chord does not count.
 SHORTEST = 0.1
@@ -70,6 +71,8 @@ class Chords:
     arm : ndarray, shape (k, 2), m
         What the rotations at both ends contribute to ℓ γ: distance of the bond's far end from
         the point, less ½ |ξ|.
+    factor : ndarray, shape (k,), optional
+        On its modulus.
     """
 
     offset: Indices
@@ -77,6 +80,7 @@ class Chords:
     position: Array
     length: Array
     arm: Array
+    factor: Array | None = None
 
     @classmethod
     def of(cls, lattice: Lattice, family: Family, outline: Outline) -> Chords | None:
@@ -130,7 +134,9 @@ class Chords:
         """Those of which all nodes are among the `touched`."""
         kept = touched[outline.edges[self.edge]].all(axis=(1, 2))
         names = ("offset", "edge", "position", "length", "arm")
-        return Chords(*(getattr(self, name)[kept] for name in names))
+        factor = None if self.factor is None else self.factor[kept]
+        fewer: dict[str, Any] = {name: getattr(self, name)[kept] for name in names}
+        return Chords(**fewer, factor=factor)
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,6 +159,10 @@ class EndedBonds:
         Components of the nodes that are prescribed, and not in equilibrium.
     given : ndarray, shape (components, nodes of the outline), optional
         Their values, in the units of the unknowns.
+    factor : ndarray, shape (k,), optional
+        On the modulus of each.
+    edge_factor : ndarray, shape (edges of the outline, family size / 2), optional
+        What the membrane along the edge takes for bonds of each half offset (`factors`).
     """
 
     outline: Outline
@@ -164,6 +174,8 @@ class EndedBonds:
     chords: Chords | None = None
     held: Mask | None = None
     given: Array | None = None
+    factor: Array | None = None
+    edge_factor: Array | None = None
 
     @classmethod
     def of(
@@ -195,7 +207,9 @@ class EndedBonds:
         kept = ~np.isin(self.particle, particles)
         if not kept.any():
             return None
-        names = ("particle", "offset", "edge", "position", "length")
+        names = ["particle", "offset", "edge", "position", "length"]
+        if self.factor is not None:
+            names.append("factor")
         fewer: dict[str, Any] = {name: getattr(self, name)[kept] for name in names}
         left = replace(self, **fewer)
         if self.chords is not None:
@@ -216,6 +230,13 @@ class EndedBonds:
     def holding(self, held: Mask, given: Array) -> EndedBonds:
         """The same bonds with some components of the outline's nodes prescribed."""
         return replace(self, held=held, given=given)
+
+    def scaled(self, factors: Factors) -> EndedBonds:
+        """The same bonds with a factor on each."""
+        chords = self.chords
+        if chords is not None:
+            chords = replace(chords, factor=factors.chords)
+        return replace(self, chords=chords, factor=factors.ended, edge_factor=factors.edges)
 
     def __len__(self) -> int:
         return len(self.particle)

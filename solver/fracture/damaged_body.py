@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from time import perf_counter
+from typing import Protocol
 
 import numpy as np
 from scipy.sparse.linalg import LinearOperator
@@ -25,7 +26,7 @@ from ..problem import Discretisation, mechanisms
 from ..problem.bordering import border
 from ..problem.rigid import unheld
 from ..solution import Solution, Statistics
-from .breaking import Breakable
+from .broken import BrokenBonds
 from .crack_path import initial_tips
 
 # Iterations above those that a fresh preconditioner would have taken after which it is brought up
@@ -53,13 +54,25 @@ class Step:
     released: float
 
 
+class Record(Protocol):
+    """What an equilibrium follows: the record of broken bonds, and between which particles each is.
+
+    A `Breakable`, or what a sensor makes of one.
+    """
+
+    broken: BrokenBonds
+
+    def ends(self, bonds: Indices) -> tuple[Indices, Indices, Indices]:
+        """Half offsets, particles of origin and other ends of bonds, each (n,)."""
+
+
 class Equilibrium:
     """Answer of a body to the unit load of its scene.
 
     Parameters
     ----------
     discretisation : Discretisation
-    breakable : Breakable
+    breakable : Breakable, or another `Record`
         Its record of broken bonds is what `bonds` and `operator` follow.
     tolerance : float
         Relative residual of every solve.
@@ -76,7 +89,7 @@ class Equilibrium:
     def __init__(
         self,
         discretisation: Discretisation,
-        breakable: Breakable,
+        breakable: Record,
         tolerance: float,
         max_iterations: int,
     ) -> None:

@@ -5,24 +5,34 @@ lattice, less the bonds that the mechanics has broken. It is solved where the ru
 nowhere else, as a monitor of `grow`:
 
     grow(scene, toughness, programme, monitors={"drop": Sensor(conductor, above, below)})
+
+Between two readings nothing is done, and from one to the next all is kept that the breaks leave as
+it was: the bonds, the last potential as a first guess, the preconditioner (`Equilibrium`). Parts
+without a lead are set aside; hinges need not be looked for, because a connected conductor has none.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from ..analyses.statics import solve
-from ..arrays import Mask
+from ..arrays import Array, Indices, Mask
 from ..errors import MechanismError, SceneError
 from ..geometry import Lattice, Where, select
 from ..problem import Description, Discretisation
 from ..solution import Solution
+from .broken import BrokenBonds
+from .damaged_body import Equilibrium
 
 if TYPE_CHECKING:
     from .growth import Growth
+
+# Iterations of one reading.
+_MOST = 20_000
 
 
 @dataclass(frozen=True)
@@ -48,6 +58,9 @@ class Sensor:
     plus: Where
     minus: Where
     tolerance: float = 1e-9
+    _live: WeakKeyDictionary[Growth, _Live] = field(
+        default_factory=WeakKeyDictionary, init=False, repr=False, compare=False
+    )
 
     def __post_init__(self) -> None:
         if len(self.scene.physics.unknowns) != 1:
@@ -60,17 +73,27 @@ class Sensor:
     def __call__(self, run: Growth) -> float:
         """Potential difference plus − minus for the bonds that `run` has broken, V.
 
-        Infinite once no current can pass from lead to lead.
+        To the sensor's tolerance: the last digits depend on what was read before. Infinite once
+        no current can pass from lead to lead, NaN once a probe hangs on a part without a lead.
         """
-        self._require_same_bonds(run)
-        broken = run.broken
-        try:
-            solution = self.solve(broken)
-        except MechanismError:
-            if not broken.any():
-                raise
-            return float("inf")
-        return self.read(solution)
+        live = self._live.get(run)
+        if live is None:
+            self._require_same_bonds(run)
+            live = self._live[run] = _Live(self, run)
+        return live.read(run)
+
+    def solution(self, run: Growth) -> Solution:
+        """The potential as it was last read.
+
+        Raises
+        ------
+        SceneError
+            If nothing has been read of this run.
+        """
+        live = self._live.get(run)
+        if live is None:
+            raise SceneError("the sensor has read nothing of this run")
+        return live.body.solution(1.0)
 
     def _require_same_bonds(self, run: Growth) -> None:
         """Refuse a conductor that is not the body whose bonds break."""
@@ -103,11 +126,65 @@ class Sensor:
         SceneError
             If no particle is where a probe is.
         """
-        lattice, values = solution.discretisation.lattice, solution.unknowns[0]
-        found = []
-        for where in (self.plus, self.minus):
-            chosen = select(lattice, where)
-            if not chosen.any():
-                raise SceneError("no particle is where a probe is to read the potential")
-            found.append(float(np.mean(values[chosen])))
-        return found[0] - found[1]
+        plus, minus = self.probes(solution.discretisation.lattice)
+        return _difference(solution.unknowns[0], plus, minus)
+
+    def probes(self, lattice: Lattice) -> tuple[Mask, Mask]:
+        """Particles of the two probes, each (N,); as `read`."""
+        plus, minus = select(lattice, self.plus), select(lattice, self.minus)
+        if not (plus.any() and minus.any()):
+            raise SceneError("no particle is where a probe is to read the potential")
+        return plus, minus
+
+
+class _Record:
+    """The bonds that the load has broken, as `Equilibrium` follows them."""
+
+    def __init__(self, run: Growth) -> None:
+        self._bonds, self.broken = run.bonds, BrokenBonds()
+
+    def catch_up(self) -> None:
+        """Take over what has been broken since; what merely went with a part still conducts."""
+        new = self._bonds.broken.by_load[len(self.broken) :]
+        self.broken.add(new["bond"], new["step"], new["load_factor"], False)
+
+    def ends(self, bonds: Indices) -> tuple[Indices, Indices, Indices]:
+        """See `Breakable.ends`."""
+        return self._bonds.ends(bonds)
+
+
+class _Live:
+    """The conductor of one run, as it was when it was read last."""
+
+    def __init__(self, sensor: Sensor, run: Growth) -> None:
+        start = Discretisation.of(sensor.scene, sharp_tips=False, constrained=True)
+        self.record = _Record(run)
+        self.body = Equilibrium(start, self.record, sensor.tolerance, _MOST)
+        self.plus, self.minus = sensor.probes(start.lattice)
+        self._known: tuple[int, float] | None = None
+
+    def read(self, run: Growth) -> float:
+        """See `Sensor.__call__`."""
+        self.record.catch_up()
+        count = len(self.record.broken)
+        if self._known is None or self._known[0] != count:
+            self._known = count, self._solved()
+        return self._known[1]
+
+    def _solved(self) -> float:
+        try:
+            self.body.follow()
+            loose = self.body.fragments()
+            if len(loose):
+                self.body.set_aside(loose)
+            self.body.solve()
+        except MechanismError:
+            # Without a broken bond it is the scene that is wrong.
+            if not len(self.record.broken):
+                raise
+            return float("inf")
+        return _difference(self.body.unknowns[0], self.plus, self.minus)
+
+
+def _difference(values: Array, plus: Mask, minus: Mask) -> float:
+    return float(np.mean(values[plus]) - np.mean(values[minus]))

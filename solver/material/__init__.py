@@ -16,6 +16,7 @@ from .moduli import (
     effective_tensor,
     stretch_rows,
 )
+from .piezoresistance import Piezoresistance
 from .stability import Stability, assess
 from .symbol import acoustic_tensor, brillouin_zone, condensed_symbol, margins
 from .tensors import (
@@ -48,6 +49,7 @@ __all__ = [
     "Influence",
     "Material",
     "Moduli",
+    "Piezoresistance",
     "Plane",
     "PolarModuli",
     "PolarTensor",

@@ -311,6 +311,27 @@ def _conductive(
     return _mirrored(conductivity)
 
 
+def quartic_moments(psi: Array) -> Array:
+    """Products n n n n with 0 to 4 factors n2, shape (5, n)."""
+    c, s = np.cos(psi), np.sin(psi)
+    return np.array([c ** (4 - k) * s**k for k in range(5)])
+
+
+def quartic_target(family: Family, material: ConductivityTensor, law: AngularLaw | None) -> Array:
+    """½ ∫ Λ k n n n n dA over the disc of the continuum's law, as `quartic_moments`, shape (5,).
+
+    It does not depend on the disc: k is what makes ½ ∫ Λ k n n dA the conductivity.
+    """
+    law = Cosine() if law is None else law
+    circle = _circle(law)
+    basis = law.conductive(circle, material, extended=False)
+    weight = 0.5 * family.horizon**2 * family.influence.moment(1) * 2 * np.pi / len(circle)
+    system = weight * conductive_moments(circle) @ basis.T
+    what = f"{type(law).__name__} law (continuum)"
+    on_circle = _solve(system, material.matrix[PAIRS2], what) @ basis
+    return np.asarray(weight * quartic_moments(circle) @ on_circle)
+
+
 def _not_on(family: Family) -> NotRepresentableError:
     return NotRepresentableError(
         f"no non-negative bond moduli represent this tensor at m = {family.m:g}"

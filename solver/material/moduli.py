@@ -9,8 +9,8 @@ the energy of a pair,
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -91,6 +91,12 @@ class Moduli(ABC):
     @abstractmethod
     def absolute(self) -> Moduli:
         """The same with every negative modulus turned positive."""
+
+    def scaled(self, factor: Array) -> Self:
+        """The same with a factor on all moduli of each bond, shape (family size,)."""
+        given: Any = self
+        moduli = {item.name: factor * getattr(self, item.name) for item in fields(given)}
+        return type(self)(**moduli)
 
     def pair_length(self, family: Family) -> Array:
         """L of the pair's energy, shape (family size,), m or 1."""

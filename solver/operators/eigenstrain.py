@@ -105,7 +105,7 @@ class Eigenstrain:
         outline, c = ended.outline, moduli.components
         number = np.full(len(outline.nodes), -1)
         number[surface.nodes] = np.arange(len(surface.nodes))
-        rule = BondStrains(family, moduli, ended.offset, ended.length)
+        rule = BondStrains(family, moduli, ended.offset, ended.length, ended.factor)
         whole = family.length[ended.offset]
         force = rule.weight * self.of_ended(ended)
         on_particles = np.zeros((c, self.bonds.lattice.count))

@@ -69,13 +69,17 @@ class _Directions:
         return cls(step, of.ravel())
 
 
-def shares(family: Family, moduli: Moduli, along: Array) -> tuple[Array, Array]:
+def shares(
+    family: Family, moduli: Moduli, along: Array, factors: Array | None = None
+) -> tuple[Array, Array]:
     """Shares of the half offsets in the energy of a uniaxial state, and its modulus.
 
     Parameters
     ----------
     along : ndarray, shape (e, 2)
         Unit vectors τ.
+    factors : ndarray, shape (e, family size / 2), optional
+        On the moduli, edge by edge.
 
     Returns
     -------
@@ -87,17 +91,29 @@ def shares(family: Family, moduli: Moduli, along: Array) -> tuple[Array, Array]:
     half = family.size // 2
     weight = (family.weight * family.cell_area * moduli.pair_length(family))[:half]
     stress = moduli.uniaxial(along)
-    strain = stress @ np.linalg.inv(effective_tensor(family, moduli))
+    if factors is None:
+        strain = stress @ np.linalg.inv(effective_tensor(family, moduli))
+    else:
+        own = [effective_tensor(family, moduli.scaled(np.tile(f, 2))) for f in factors]
+        strain = np.linalg.solve(np.array(own), stress[:, :, None])[:, :, 0]
     # Each strain of each bond in that state, (strains, e, half).
     found = np.einsum("ei,aio->aeo", strain, moduli.homogeneous(family.normal[:half].T))
     energy = weight * np.einsum("ao,aeo->eo", moduli.stiffness[:, :half], found**2)
+    if factors is not None:
+        energy *= factors
     return energy / energy.sum(axis=1, keepdims=True), 1.0 / (strain * stress).sum(axis=1)
 
 
-def thickness(outline: Outline, family: Family, moduli: Moduli, edges: Indices) -> Array:
+def thickness(
+    outline: Outline,
+    family: Family,
+    moduli: Moduli,
+    edges: Indices,
+    factors: Array | None = None,
+) -> Array:
     """e E_τ of some edges of the outline, shape (len(edges),), N/m (or W/K) per unit thickness.
 
-    Zero on the faces of cracks.
+    Zero on the faces of cracks. `factors` on the moduli, (edges of the outline, family size / 2).
     """
     result = np.zeros(len(edges))
     own = np.nonzero(outline.face[edges] == 0)[0]
@@ -109,7 +125,8 @@ def thickness(outline: Outline, family: Family, moduli: Moduli, edges: Indices) 
     last = outline.nodes[outline.edges[edges[own], 1]]
     along = last - first
     along /= np.hypot(*along.T)[:, None]
-    share, modulus = shares(family, moduli, along)
+    at = None if factors is None else factors[edges[own]]
+    share, modulus = shares(family, moduli, along, at)
     summed = np.zeros((len(own), len(directions.step)))
     for place, direction in enumerate(directions.of):
         summed[:, direction] += share[:, place]

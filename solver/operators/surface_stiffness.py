@@ -66,7 +66,7 @@ class SurfaceStiffness:
         number = np.full(len(ended.outline.nodes), -1)
         number[self.nodes] = np.arange(count[1])
         length = ended.length
-        rule = BondStrains(family, moduli, ended.offset, length)
+        rule = BondStrains(family, moduli, ended.offset, length, ended.factor)
         whole = family.length[ended.offset]
         particle = rule.rows(-1.0, 0.5 * whole)
         strain_p = place(particle, [(here, np.ones_like(length))], count[0])
@@ -318,7 +318,7 @@ def membrane(ended: EndedBonds, family: Family, moduli: Moduli, number: Indices)
     edges = np.nonzero((outline.face == 0) & (ends >= 0).all(axis=1))[0]
     if not len(edges):
         return None
-    stiffness = thickness(outline, family, moduli, edges) / family.cell_area
+    stiffness = thickness(outline, family, moduli, edges, ended.edge_factor) / family.cell_area
     length = outline.length[edges]
     along = (outline.nodes[outline.edges[edges, 1]] - outline.nodes[outline.edges[edges, 0]]).T
     along = along / length if c > 1 else np.ones((1, len(edges)))
@@ -361,7 +361,7 @@ def chord_strains(
     chords = ended.chords
     if chords is None or not len(chords.offset):
         return None
-    rule = BondStrains(family, moduli, chords.offset, chords.length)
+    rule = BondStrains(family, moduli, chords.offset, chords.length, chords.factor)
     count = int((number >= 0).sum())
     strain = sparse.csr_array((rule.weight.size, moduli.components * count))
     for end, sign in enumerate((-1.0, 1.0)):
@@ -374,7 +374,14 @@ def chord_strains(
 class BondStrains:
     """The strains of bonds of given offsets and lengths, as rows of values at their ends."""
 
-    def __init__(self, family: Family, moduli: Moduli, offset: Indices, length: Array) -> None:
+    def __init__(
+        self,
+        family: Family,
+        moduli: Moduli,
+        offset: Indices,
+        length: Array,
+        factor: Array | None = None,
+    ) -> None:
         self.moduli, self.normal = moduli, family.normal[offset].T
         self.scales = moduli.scales(family.spacing)
         # A bond without length would be a rigid link. Below a share of the spacing its stiffness
@@ -387,6 +394,8 @@ class BondStrains:
         self.weight: Array = (
             weight * moduli.pair_length(family)[offset] * moduli.stiffness[:, offset]
         )
+        if factor is not None:
+            self.weight *= factor
 
     def rows(self, end: float, arm: Array) -> Array:
         """The share of one end, shape (strains, components, k).

@@ -11,7 +11,7 @@ from numbers import Real
 from typing import Literal, Self
 
 from ..arrays import Mask
-from ..bonds import Surface, check_surface
+from ..bonds import Bonds, Factors, Surface, check_surface
 from ..errors import SceneError
 from ..geometry import Crack, Lattice, Region
 from ..material import (
@@ -22,6 +22,7 @@ from ..material import (
     Family,
     Influence,
     Material,
+    Moduli,
 )
 from ..material.influence import influence
 from ..material.physics import Physics
@@ -67,6 +68,9 @@ class Description:
         ρ, kg/m³: statics needs none, whatever moves in time does.
     heat_capacity : float, optional
         Volumetric heat capacity, density times specific heat, J/(m³ K), of a transient.
+    factors : callable, optional
+        ``factors(bonds, moduli)`` → `solver.bonds.Factors` on the moduli of single bonds, such as
+        those of a strained conductor (`solver.strained`).
 
     Raises
     ------
@@ -91,6 +95,7 @@ class Description:
     phase: tuple[float, float] | None = None
     density: float | None = None
     heat_capacity: float | None = None
+    factors: Callable[[Bonds, Moduli], Factors] | None = None
 
     def __post_init__(self) -> None:
         check_surface(self.surface)

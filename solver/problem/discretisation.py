@@ -133,6 +133,8 @@ class Discretisation:
             )
             if bonds.ended is not None:
                 outline = bonds.ended.outline
+            if scene.factors is not None:
+                bonds = bonds.scaled(scene.factors(bonds, moduli))
             _hold_edges(scene, bonds, moduli)
             operator = BondOperator(bonds, moduli, prescribed)
             loose, why = mechanisms.find(

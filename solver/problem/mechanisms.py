@@ -132,7 +132,9 @@ def find(
             f"{len(slack)} particle(s), the first at ({x:.4g}, {y:.4g}), have too few bonds left "
             f"to be held by them"
         )
-    if damaged and not free and len(operator.active):
+    # A conductor has no hinges: with positive bonds no field but a level is free of energy.
+    network = operator.components == 1 and operator.moduli.non_negative
+    if damaged and not free and not network and len(operator.active):
         hinged = zero_energy_particles(operator if positive else operator.companion())
         if len(hinged):
             x, y = points[hinged].mean(axis=0)

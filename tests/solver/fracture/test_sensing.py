@@ -1,5 +1,7 @@
 """Damage sensing: the drop follows the bonds that break, as a drawn crack would have it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ from solver import (
     Crack,
     ElectricConductivityTensor,
     Load,
+    MechanismError,
     Programme,
     Scene,
     SceneError,
@@ -37,9 +40,10 @@ def conductor(**changes) -> Scene:
         "region": mechanical.region,
         "supports": [Support.where(bottom, potential=0.0)],
         "loads": [Load.lead(1.0, top)],
+        "surface": "none",
         **changes,
     }
-    return Scene(spacing=1.0 / strip.N, material=CONDUCTOR, m=strip.M, surface="none", **settings)
+    return Scene(spacing=1.0 / strip.N, material=CONDUCTOR, m=strip.M, **settings)
 
 
 def run(monitor, mechanical, **options):
@@ -56,7 +60,55 @@ def test_the_drop_rises_with_the_crack_and_is_that_of_the_broken_bonds():
     assert (np.diff(known) > -1e-6 * known[0]).all()
     assert known[-1] > 1.1 * known[0]
     # Without a broken bond it is the intact scene's, whose crack is as blunt as one that grows.
-    assert drop[0] == sensor.read(sensor.solve(np.zeros_like(growth.broken)))
+    whole = sensor.read(sensor.solve(np.zeros_like(growth.broken)))
+    assert drop[0] == pytest.approx(whole, rel=1e-8)
+
+
+@pytest.mark.parametrize("surface", ["none", "volume"])
+def test_what_is_kept_between_readings_gives_what_a_fresh_solve_gives(surface):
+    mechanical = replace(strip.scene(), surface=surface)
+    sensor, fresh = Sensor(conductor(surface=surface), top, bottom), []
+
+    def read(growth):
+        try:
+            fresh.append(sensor.read(sensor.solve(growth.broken)))
+        except MechanismError:
+            fresh.append(np.inf)
+        return sensor(growth)
+
+    growth = run(read, mechanical)
+    drop = np.array(growth.history.drop)
+    parted = np.isinf(drop)
+    assert (parted == np.isinf(fresh)).all()
+    assert drop[~parted] == pytest.approx(np.array(fresh)[~parted], rel=1e-7)
+    assert np.ptp(drop[~parted]) > 0.1 * drop[0]
+    # Another run starts anew.
+    assert run(sensor, mechanical).history.drop[0] == pytest.approx(drop[0], rel=1e-8)
+    assert sensor.read(sensor.solution(growth)) == pytest.approx(drop[~parted][-1], rel=1e-12)
+
+
+def test_nothing_is_solved_where_nothing_has_broken():
+    sensor, iterations = Sensor(conductor(), top, bottom), []
+
+    def read(growth):
+        first = sensor(growth)
+        before = sensor.solution(growth).statistics.iterations
+        assert sensor(growth) == first
+        iterations.append(sensor.solution(growth).statistics.iterations - before)
+        return first
+
+    run(read, strip.scene())
+    assert not any(iterations)
+
+
+def test_a_part_without_a_lead_reads_as_no_number():
+    """Its probe floats; the rest of the body is read as ever."""
+    sensor = Sensor(conductor(), top, lambda x, y: (abs(x) < 0.06) & (abs(y) < 0.06))
+    fake = run(sensor, strip.scene())
+    island = np.abs(fake.points).max(axis=1) < 0.11
+    bonds = fake.bonds.of_particles(np.nonzero(island)[0])
+    fake.bonds.broken.add(bonds, len(fake.steps) + 1, 1.0, False)
+    assert np.isnan(sensor(fake))
 
 
 def test_bonds_broken_along_a_line_resist_as_a_crack_does():

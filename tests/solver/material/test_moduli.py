@@ -1,5 +1,7 @@
 """Moments of bonds, and the tensor that a family's moduli make."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ from solver import ConductivityTensor, ElasticTensor, Family
 from solver.material import ConductiveModuli, ElasticModuli, calibrate
 from solver.material.moduli import (
     PAIRS3,
+    Moduli,
     bond_weights,
     conductive_moments,
     effective_tensor,
@@ -72,3 +75,18 @@ def test_what_moduli_say_of_themselves():
     assert not ElasticModuli(np.ones(4), np.zeros(4)).has_shear
     assert not ElasticModuli(np.ones(4), -np.ones(4)).non_negative
     assert not ConductiveModuli(np.array([1.0, -1.0])).non_negative
+
+
+def test_a_factor_scales_every_modulus():
+    """Whatever a kind of bond has: none of its moduli is forgotten."""
+    factor = np.array([2.0, 0.5])
+    for kind in subclasses(Moduli):
+        size = len(dataclasses.fields(kind))
+        moduli = kind(*(np.array([1.0, 3.0]) for _ in range(size)))
+        found = moduli.scaled(factor)
+        assert type(found) is kind
+        np.testing.assert_array_equal(found.stiffness, moduli.stiffness * factor)
+
+
+def subclasses(kind):
+    return [k for one in kind.__subclasses__() for k in (one, *subclasses(one))]
