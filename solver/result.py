@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,7 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arrays import Array
+from .bonds.cells import Cells
 
+# Scalars that are continuous: unknowns, by the last word of their names.
+_SMOOTH = ("rotation", "temperature", "potential")
 #: Of the .npz files: raised when a key changes its name, shape or unit.
 FORMAT = 1
 
@@ -44,6 +47,11 @@ class Result(ABC):
     def summary(self) -> dict[str, Any]:
         """Plain numbers and words by name, for a terminal or JSON."""
 
+    @property
+    def cells(self) -> Cells | None:
+        """The particles' cells, to be drawn as a surface; None draws dots."""
+        return None
+
     def tables(self) -> dict[str, Table]:
         """Histories, paths and the like by name; none by default."""
         return {}
@@ -60,7 +68,7 @@ class Result(ABC):
         -------
         tuple of Path
         """
-        paths = list(write_arrays(self.points, self.fields(), stem))
+        paths = list(write_arrays(self.points, self.fields(), stem, cells=self.cells))
         for name, table in self.tables().items():
             path = suffixed(stem, f".{name}.csv")
             header = ",".join(table.columns)
@@ -94,23 +102,15 @@ def write_arrays(
     arrays: dict[str, Array],
     stem: str | os.PathLike[str],
     triangles: NDArray[np.int64] | None = None,
+    cells: Cells | None = None,
 ) -> tuple[Path, Path]:
-    """Write point data on (N, 2) points as .vtu and .npz; vectors (N, 2) are padded for VTK."""
-    import meshio
+    """Write values at (N, 2) points as .vtu and .npz; vectors (N, 2) are padded for VTK.
 
+    The .vtu holds what `vtk_mesh` makes of them, the .npz the values as they are.
+    """
     vtu, npz = suffixed(stem, ".vtu"), suffixed(stem, ".npz")
     vtu.parent.mkdir(parents=True, exist_ok=True)
-    count = len(points)
-    cells = (
-        [("vertex", np.arange(count).reshape(-1, 1))]
-        if triangles is None
-        else [("triangle", np.asarray(triangles))]
-    )
-    data = {
-        name: np.column_stack([a, np.zeros(count)]) if a.ndim == 2 else a
-        for name, a in arrays.items()
-    }
-    mesh = meshio.Mesh(np.column_stack([points, np.zeros(count)]), cells, point_data=data)
+    mesh = vtk_mesh(points, arrays, triangles, cells)
     with replacing(vtu) as partial:
         mesh.write(partial, file_format="vtu")
     kept: dict[str, Any] = {"points": points, "format": FORMAT, **arrays}
@@ -119,3 +119,41 @@ def write_arrays(
     with replacing(npz) as partial, open(partial, "wb") as stream:
         np.savez_compressed(stream, **kept)
     return vtu, npz
+
+
+def vtk_mesh(
+    points: Array,
+    arrays: Mapping[str, Array],
+    triangles: NDArray[np.int64] | None = None,
+    cells: Cells | None = None,
+) -> Any:
+    """A mesh for ParaView: the particles' cells, or triangles between the points, or dots.
+
+    On cells every field is cell data, and vectors and unknowns (what a body is warped by or what
+    is looked at as a relief) are point data at the cells' corners too.
+    """
+    import meshio
+
+    if cells is None:
+        count = len(points)
+        kind = (
+            ("vertex", np.arange(count).reshape(-1, 1))
+            if triangles is None
+            else ("triangle", np.asarray(triangles))
+        )
+        return meshio.Mesh(_solid(points), [kind], point_data=_padded(arrays))
+    smooth = {k: v for k, v in arrays.items() if v.ndim == 2 or k.split()[-1] in _SMOOTH}
+    return meshio.Mesh(
+        _solid(cells.corners),
+        [("quad", cells.quads)],
+        point_data=_padded({k: cells.at_corners(v) for k, v in smooth.items()}),
+        cell_data={k: [v] for k, v in _padded(arrays).items()},
+    )
+
+
+def _solid(points: Array) -> Array:
+    return np.column_stack([points, np.zeros(len(points))])
+
+
+def _padded(arrays: Mapping[str, Array]) -> dict[str, Array]:
+    return {name: _solid(a) if a.ndim == 2 else a for name, a in arrays.items()}

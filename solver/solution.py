@@ -9,6 +9,7 @@ from scipy.sparse.linalg import LinearOperator
 
 from . import recovery
 from .arrays import Array
+from .bonds import Cells
 from .result import Result
 from .state import State
 
@@ -70,6 +71,11 @@ class Solution(State, Result):
 
     statistics: Statistics
     preconditioner: LinearOperator | None = field(default=None, repr=False)
+
+    @property
+    def cells(self) -> Cells:
+        """The particles' cells, parted where bonds carry nothing."""
+        return Cells.of(self.discretisation.bonds)
 
     def fields(self) -> dict[str, Array]:
         """What was solved for and what is recovered from it, by name, (N,) or (N, 2), SI units."""

@@ -18,6 +18,7 @@ from scipy.sparse.linalg import LinearOperator
 
 from ..arrays import Array, Mask
 from ..blas import one_thread
+from ..bonds import Cells
 from ..errors import ConvergenceError, MechanismError, NegativeCurvatureError, SceneError
 from ..linear import TwoLevel, eigen, method
 from ..linear.condensed import Condensed
@@ -103,6 +104,11 @@ class Modes(Result):
     def warnings(self) -> tuple[str, ...]:
         """What the answer leaves out or settles by a rule, one sentence each."""
         return self.discretisation.warnings
+
+    @property
+    def cells(self) -> Cells:
+        """The particles' cells, parted where bonds carry nothing."""
+        return Cells.of(self.discretisation.bonds)
 
     def fields(self) -> dict[str, Array]:
         """Every mode's displacement (N, 2) and rotation (N,), by name."""

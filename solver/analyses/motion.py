@@ -228,7 +228,7 @@ class Motion:
             raise SceneError(f"a state is kept every so many steps, a whole number, not {every!r}")
         lattice = self.body.lattice
         self.watched = nearest(lattice, np.zeros((0, 2)) if probes is None else probes)
-        self.series = None if series is None else Series(series, lattice)
+        self.series = None if series is None else Series(series, self.body.bonds)
         mark = ""
         if checkpoint is not None:
             driven = {

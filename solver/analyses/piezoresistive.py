@@ -12,6 +12,7 @@ from typing import Any
 
 from .. import recovery
 from ..arrays import Array
+from ..bonds import Cells
 from ..errors import SceneError
 from ..geometry import Where
 from ..material import ElectricConductivityTensor, Piezoresistance
@@ -53,6 +54,11 @@ class Resistor(Result):
         """ΔR/R."""
         before, after = self.resistances
         return after / before - 1.0
+
+    @property
+    def cells(self) -> Cells:
+        """The particles' cells, parted where bonds carry nothing."""
+        return self.mechanics.cells
 
     def fields(self) -> dict[str, Array]:
         """The mechanical fields, and potential and current density of the strained conductor."""

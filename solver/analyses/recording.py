@@ -20,10 +20,11 @@ from numpy.typing import ArrayLike
 
 from .. import state_file
 from ..arrays import Array, Indices
+from ..bonds import Bonds, Cells
 from ..errors import SceneError
 from ..geometry import Lattice
 from ..problem import Discretisation
-from ..result import Table, replacing, suffixed
+from ..result import Table, replacing, suffixed, vtk_mesh
 
 #: Told the share of the run that is done, 0 to 1.
 Progress = Callable[[float], None]
@@ -120,7 +121,7 @@ class Series:
     Parameters
     ----------
     stem : path without suffix
-    lattice : Lattice
+    bonds : Bonds
 
     Raises
     ------
@@ -128,22 +129,13 @@ class Series:
         If the folder is missing or cannot be written to.
     """
 
-    def __init__(self, stem: str | os.PathLike[str], lattice: Lattice) -> None:
-        self.stem, self.points = Path(stem), lattice.points
+    def __init__(self, stem: str | os.PathLike[str], bonds: Bonds) -> None:
+        self.stem, self.points, self.cells = Path(stem), bonds.lattice.points, Cells.of(bonds)
         state_file.check(suffixed(self.stem, ".pvd"), "series")
 
     def write(self, number: int, times: Sequence[float], fields: Mapping[str, Array]) -> None:
         """Write the fields of frame `number` and list the frames of `times`."""
-        import meshio
-
-        count = len(self.points)
-        data = {
-            name: np.column_stack([a, np.zeros(count)]) if a.ndim == 2 else a
-            for name, a in fields.items()
-        }
-        cells = [("vertex", np.arange(count).reshape(-1, 1))]
-        points = np.column_stack([self.points, np.zeros(count)])
-        mesh = meshio.Mesh(points, cells, point_data=data)
+        mesh = vtk_mesh(self.points, dict(fields), cells=self.cells)
         _whole(self._frame(number), lambda path: mesh.write(path, file_format="vtu"))
         lines = [
             f'<DataSet timestep="{time!r}" part="0" file={quoteattr(self._frame(k).name)}/>'

@@ -29,6 +29,7 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..blas import one_thread
+from ..bonds import Cells
 from ..errors import ConvergenceError, SceneError
 from ..linear.shifted import Shifted
 from ..problem import Description, Discretisation, Forcing
@@ -131,6 +132,11 @@ class Transient(Result):
         then = self._forcing.at(float(self.times[index]))
         found = then.surface_values(self.temperature[index][None])
         return np.zeros(0) if found is None else found[0]
+
+    @property
+    def cells(self) -> Cells:
+        """The particles' cells, parted where bonds carry nothing."""
+        return Cells.of(self.body.bonds)
 
     def fields(self, index: int = -1) -> dict[str, Array]:
         """Fields by name at one of the times."""
@@ -272,7 +278,7 @@ class _March:
             raise SceneError(f"a state is kept every so many steps, a whole number, not {every!r}")
         lattice = self.body.lattice
         self.watched = nearest(lattice, np.zeros((0, 2)) if probes is None else probes)
-        self.series = None if series is None else Series(series, lattice)
+        self.series = None if series is None else Series(series, self.body.bonds)
         mark = ""
         if checkpoint is not None:
             driven = {

@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..blas import one_thread
+from ..bonds import Cells
 from ..errors import SceneError
 from ..material import PolarTensor
 from ..problem import Description, Discretisation, Forcing
@@ -142,6 +143,11 @@ class Waves(Result):
         then = self._forcing.at(float(self.times[index]))
         found = then.surface_values(np.array(values))
         return np.zeros((0, 2)) if found is None else found[:2].T
+
+    @property
+    def cells(self) -> Cells:
+        """The particles' cells, parted where bonds carry nothing."""
+        return Cells.of(self.body.bonds)
 
     def fields(self, index: int = -1) -> dict[str, Array]:
         """Fields by name at one of the times."""

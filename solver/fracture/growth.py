@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array, Indices, Mask
-from ..bonds import damage
+from ..bonds import Bonds, Cells, damage
 from ..errors import ConvergenceError, NegativeCurvatureError, SceneError
 from ..geometry import Where
 from ..result import Result, Table
@@ -133,9 +133,13 @@ class Growth(Result):
         Bonds within a loose fragment count as long as they are whole: only those that broke are
         gone, not those that setting it aside took out of the equations.
         """
-        count = self.bonds.lattice.count
-        offsets, origins = np.divmod(self.broken_bonds, count)
-        return damage(self.body.sound.bonds.breaking(offsets, origins))
+        return damage(self.left)
+
+    @property
+    def left(self) -> Bonds:
+        """The bonds that have not broken, those within loose fragments too."""
+        offsets, origins = np.divmod(self.broken_bonds, self.bonds.lattice.count)
+        return self.body.sound.bonds.breaking(offsets, origins)
 
     @property
     def midpoints(self) -> Array:
@@ -194,6 +198,11 @@ class Growth(Result):
     def points(self) -> Array:
         """Particle centres, shape (N, 2), m."""
         return self.body.sound.lattice.points
+
+    @property
+    def cells(self) -> Cells:
+        """The particles' cells, parted where bonds carry nothing."""
+        return Cells.of(self.left)
 
     def fields(self) -> dict[str, Array]:
         """Fields of the last equilibrium under its load, the damage, and what came loose."""

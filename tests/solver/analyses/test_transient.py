@@ -270,7 +270,7 @@ def test_the_series_can_be_read(tmp_path):
     found = ElementTree.parse(tmp_path / "heat.pvd").getroot().findall(".//DataSet")
     assert [float(one.get("timestep")) for one in found] == run.times.tolist()
     mesh = meshio.read(tmp_path / found[-1].get("file"))
-    np.testing.assert_array_equal(mesh.point_data["temperature"], run.temperature[-1])
+    np.testing.assert_array_equal(mesh.cell_data["temperature"][0], run.temperature[-1])
 
 
 def plain(**options):
