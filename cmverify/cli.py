@@ -267,7 +267,9 @@ def solve(
 
     from cmverify.exchange import scene_file
     from cmverify.exchange.export import check_writable
+    from cmverify.run.progress import share_done
 
+    console = Console()
     base = out or scene.with_suffix("")
     try:
         request = scene_file.request(
@@ -276,15 +278,18 @@ def solve(
             max_minutes * 60,
         )
         check_writable(base)
-        result = request.run()
+        with share_done(console, request.analysis) as tell:
+            result = request.run(tell)
         said, paths = result.summary(), result.write(base)
     except ValueError as error:
         _refuse(str(error))
     except OSError as error:
         _refuse(f"{base} cannot be written: {error.strerror or error}")
     except KeyboardInterrupt:
-        _interrupted("nothing was written; a [fracture] table may name a checkpoint to go on from")
-    console = Console()
+        _interrupted(
+            "no result was written; a run whose table names a checkpoint goes on from there with "
+            "the same command"
+        )
     warnings = said.pop("warnings", ())
     for name, value in said.items():
         console.print(f"{name.replace('_', ' '):<16}{_plain(value)}", highlight=False)

@@ -54,8 +54,6 @@ ELSEWHERE = {
     "cmverify/exchange/export.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/run/environment.py": "tests/cmverify/run/test_runner.py",
     "cmverify/exchange/refusal.py": "tests/cmverify/exchange/test_scene_file.py",
-    "cmverify/exchange/values.py": "tests/cmverify/exchange/test_scene_file.py",
-    "cmverify/run/progress.py": "tests/cmverify/test_cli.py",
     "cmverify/run/threads.py": "tests/cmverify/run/test_runner.py",
 }
 #: Run by asv, which `asv check` and a quick run test in CI.

@@ -1,7 +1,7 @@
-"""Formulas of x and y in scene files, evaluated on arrays without running arbitrary code.
+"""Formulas of x and y (and t) in scene files, evaluated on arrays without running arbitrary code.
 
 A formula is checked when it is read: names, number of arguments, whether it is a value or a
-condition, and its constant parts, which must be finite real numbers. What depends on x and y is
+condition, and its constant parts, which must be finite real numbers. What depends on x, y or t is
 checked where it is evaluated: a value that is not finite is refused with the point, unless it
 lies in the branch of a ``where`` that is not taken there.
 """
@@ -57,6 +57,8 @@ class Formula:
     Attributes
     ----------
     text : str
+    time : bool
+        Whether it may depend on the time t (in seconds) as well.
 
     Raises
     ------
@@ -66,6 +68,7 @@ class Formula:
     """
 
     text: str
+    time: bool = False
 
     def __post_init__(self) -> None:
         if len(self.text) > _LONGEST:
@@ -86,10 +89,15 @@ class Formula:
         """Whether it says yes or no, such as ``"x < 1"``, instead of giving a value."""
         return bool(self._condition)  # type: ignore[attr-defined]
 
-    def __call__(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    @property
+    def timed(self) -> bool:
+        """Whether it depends on t."""
+        return self._names(self._tree) >= {"t"}  # type: ignore[attr-defined]
+
+    def __call__(self, x: np.ndarray, y: np.ndarray, t: float = 0.0) -> np.ndarray:
         """Values at points, broadcast to their shape."""
         names = {}
-        for name, given in (("x", x), ("y", y)):
+        for name, given in (("x", x), ("y", y), ("t", t)):
             names[name] = np.array(given, dtype=np.float64)
             names[name].setflags(write=False)
         with np.errstate(all="ignore"):
@@ -101,8 +109,7 @@ class Formula:
     def _check(self, node: ast.AST) -> str:
         """Value or condition? Refuses what no formula holds, and constants without a value."""
         kind = self._kind(node)
-        varies = any(isinstance(n, ast.Name) and n.id in "xy" for n in ast.walk(node))
-        if not varies and not isinstance(node, ast.Constant | ast.Name):
+        if not self._names(node) and not isinstance(node, ast.Constant | ast.Name):
             with np.errstate(all="ignore"):
                 self._evaluate(node, {}, True)
         return kind
@@ -115,11 +122,15 @@ class Formula:
                 raise FormulaError(f"{self.text!r}: a number is too large")
             return "value"
         if isinstance(node, ast.Name):
-            if node.id in {"x", "y", *_CONSTANTS}:
+            if node.id in {"x", "y", *_CONSTANTS} or (self.time and node.id == "t"):
                 return "value"
+            if node.id == "t":
+                raise FormulaError(
+                    f"{self.text!r} depends on the time t: only values of supports and loads may"
+                )
             raise FormulaError(
                 f"{self.text!r} uses the unknown name {node.id!r}; it may use x and y, "
-                f"{', '.join(_CONSTANTS)}, {', '.join(_FUNCTIONS)}"
+                f"{'t, ' if self.time else ''}{', '.join(_CONSTANTS)}, {', '.join(_FUNCTIONS)}"
             )
         if isinstance(node, ast.BinOp) and type(node.op) in _OPERATORS:
             kinds = {self._check(node.left), self._check(node.right)}
@@ -139,6 +150,11 @@ class Formula:
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
             return self._call(node, node.func.id)
         raise self._not_allowed(node)
+
+    @staticmethod
+    def _names(node: ast.AST) -> set[str]:
+        """What a node depends on, of x, y and t."""
+        return {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and n.id in "xyt"}
 
     def _value(self, node: ast.AST) -> str:
         if self._check(node) != "value":
@@ -223,10 +239,15 @@ class Formula:
         if not bad.any():
             return
         what = f"{_source(node)} in {self.text!r} has no finite real value"
+        at = []
         if np.ndim(bad) and names:
             first = np.unravel_index(np.argmax(bad), np.shape(bad))
             x, y = (float(names[name][first]) for name in ("x", "y"))
-            what += f" at x = ({x:g}, {y:g})"
+            at.append(f"x = ({x:g}, {y:g})")
+        if names and self.timed:
+            at.append(f"t = {float(names['t']):g} s")
+        if at:
+            what += f" at {', '.join(at)}"
         raise FormulaError(what)
 
 

@@ -26,9 +26,9 @@ from cmverify.exchange.values import (
     Point,
     Points,
     Positive,
-    Scalar,
-    Triple,
-    Vector,
+    ScalarInTime,
+    TripleInTime,
+    VectorInTime,
 )
 
 
@@ -204,12 +204,12 @@ class Support(Table):
 
     layer_cells: Positive | None = Field(default=None, description="Those nearer to the edge")
     where: Condition | None = Field(default=None, description="Those for which this is true")
-    displacement: Vector | None = Field(default=None, description="m")
-    u1: Scalar | None = Field(default=None, description="m")
-    u2: Scalar | None = Field(default=None, description="m")
-    rotation: Scalar | None = Field(default=None, description="rad")
-    temperature: Scalar | None = Field(default=None, description="K")
-    potential: Scalar | None = Field(default=None, description="V")
+    displacement: VectorInTime | None = Field(default=None, description="m")
+    u1: ScalarInTime | None = Field(default=None, description="m")
+    u2: ScalarInTime | None = Field(default=None, description="m")
+    rotation: ScalarInTime | None = Field(default=None, description="rad")
+    temperature: ScalarInTime | None = Field(default=None, description="K")
+    potential: ScalarInTime | None = Field(default=None, description="V")
 
     @property
     def values(self) -> dict[str, Any]:
@@ -236,7 +236,7 @@ class BodyForce(Table):
     """A force on the body's volume."""
 
     kind: Literal["body_force"]
-    value: Vector = Field(description="N/m³")
+    value: VectorInTime = Field(description="N/m³")
     where: Condition | None = None
 
 
@@ -244,7 +244,7 @@ class Couple(Table):
     """A couple on the body's volume."""
 
     kind: Literal["couple"]
-    value: Scalar = Field(description="N m/m³")
+    value: ScalarInTime = Field(description="N m/m³")
     where: Condition | None = None
 
 
@@ -252,7 +252,7 @@ class Temperature(Table):
     """A change of temperature that strains the body."""
 
     kind: Literal["temperature"]
-    value: Scalar = Field(description="K")
+    value: ScalarInTime = Field(description="K")
     expansion: Matrix2 = Field(description="In the plane, 1/K; in plane strain the effective one")
 
 
@@ -260,7 +260,7 @@ class Source(Table):
     """A source of heat."""
 
     kind: Literal["source"]
-    value: Scalar = Field(description="W/m³")
+    value: ScalarInTime = Field(description="W/m³")
     where: Condition | None = None
 
 
@@ -268,7 +268,7 @@ class Current(Table):
     """A current fed into the body."""
 
     kind: Literal["current"]
-    value: Scalar = Field(description="A/m³")
+    value: ScalarInTime = Field(description="A/m³")
     where: Condition | None = None
 
 
@@ -284,7 +284,7 @@ class Traction(Table):
     """A traction on a straight part of the edge."""
 
     kind: Literal["traction"]
-    value: Vector = Field(description="Pa")
+    value: VectorInTime = Field(description="Pa")
     start: Point = Field(description="m")
     end: Point = Field(description="m")
 
@@ -299,7 +299,7 @@ class Stress(Table):
     """The traction σ·n of a stress (σ11, σ22, σ12) on the body's edges."""
 
     kind: Literal["stress"]
-    value: Triple = Field(description="Pa")
+    value: TripleInTime = Field(description="Pa")
     where: Condition | None = None
 
 
@@ -307,7 +307,7 @@ class Flux(Table):
     """What a flux carries into the body through its edges."""
 
     kind: Literal["flux"]
-    value: Vector = Field(description="W/m² or A/m²")
+    value: VectorInTime = Field(description="W/m² or A/m²")
     where: Condition | None = None
 
 

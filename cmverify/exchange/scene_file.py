@@ -21,6 +21,7 @@ import numpy as np
 from cmverify.exchange import budget, model
 from cmverify.exchange.model import SceneFile
 from cmverify.exchange.refusal import Place, SceneFileError, Source
+from cmverify.exchange.values import InTime
 
 if TYPE_CHECKING:
     from solver import Crack, Load, Region, Scene, Support
@@ -51,8 +52,13 @@ class Request:
     analysis: str
     options: dict[str, Any]
 
-    def run(self) -> Result:
+    def run(self, progress: Callable[[float], None] | None = None) -> Result:
         """Do what the file asks for.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Told the share that is done, if the analysis knows it.
 
         Raises
         ------
@@ -61,8 +67,11 @@ class Request:
         """
         from solver.analyses import analyses
 
+        analysis, options = analyses()[self.analysis], dict(self.options)
+        if progress is not None and analysis.reports:
+            options["progress"] = progress
         with self._refused():
-            return analyses()[self.analysis].run(self.scene, **self.options)
+            return analysis.run(self.scene, **options)
 
     @contextmanager
     def _refused(self) -> Iterator[None]:
@@ -82,6 +91,9 @@ class Request:
         for number, crack in enumerate(self.scene.cracks):
             if str(crack.points) in message:
                 return ("crack", number)
+        for place, value in _timed(self.file):
+            if any(repr(text) in message for text in value.texts):
+                return place
         table = self.source.data.get(self.analysis, {})
         for key in table:
             if re.search(rf"\b{re.escape(key)}\b", message):
@@ -124,7 +136,9 @@ def request(path: Path, memory: float | None = None, seconds: float = budget.SEC
     scene = _scene(file, source)
     _afford(file, scene, source, memory, seconds)
     analysis, options = _asked(file, source)
-    _try_on_lattice(file, scene, source)
+    _timeless(file, source, analysis)
+    # Later times are tried by the analysis, before it starts.
+    _try_on_lattice(file, scene, source, float(options.get("start", 0.0)))
     return Request(source, file, scene, analysis, options)
 
 
@@ -156,6 +170,32 @@ def _asked(file: SceneFile, source: Source) -> tuple[str, dict[str, Any]]:
         with source.at(name, "checkpoint"):
             state_file.check(options["checkpoint"])
     return name, options
+
+
+def _timed(file: SceneFile) -> Iterator[tuple[Place, InTime]]:
+    """Values that depend on time, with their places."""
+    for i, support in enumerate(file.support):
+        for name, value in support.values.items():
+            if isinstance(value, InTime):
+                yield ("support", i, name), value
+    for i, load in enumerate(file.load):
+        if isinstance(load.value, InTime):
+            yield ("load", i, "value"), load.value
+
+
+def _timeless(file: SceneFile, source: Source, analysis: str) -> None:
+    """Refuse values that depend on time where there is none."""
+    from solver.analyses import analyses
+
+    if analyses()[analysis].timed:
+        return
+    known = " or ".join(f"[{name}]" for name, one in analyses().items() if one.timed)
+    what = "statics" if analysis == "solve" else f"[{analysis}]"
+    for place, value in _timed(file):
+        raise source.error(
+            place,
+            f"{value.texts[0]!r} depends on the time t, and {what} knows no time: ask for {known}",
+        )
 
 
 # ---- from bytes to the declared model ---------------------------------------------------
@@ -336,10 +376,10 @@ def _afford(
         raise source.error(("discretisation", key), f"{too_much}: ask for less or allow more")
 
 
-def _try_on_lattice(file: SceneFile, scene: Scene, source: Source) -> None:
-    """Evaluate conditions and values where they will be needed."""
+def _try_on_lattice(file: SceneFile, scene: Scene, source: Source, start: float) -> None:
+    """Evaluate conditions, and values at the start, where they will be needed."""
     from solver.geometry import Lattice, select
-    from solver.problem.conditions import evaluate
+    from solver.problem.conditions import at_time, evaluate
     from solver.problem.discretisation import edge_loads
 
     with source.at("discretisation"):
@@ -357,8 +397,9 @@ def _try_on_lattice(file: SceneFile, scene: Scene, source: Source) -> None:
         for name, value in table.values.items():
             with source.at("support", i, name):
                 width = 2 if name == "displacement" else 1
-                evaluate(value, lattice.places[chosen], width, "it")
-    for i, (entry, load) in enumerate(zip(file.load, scene.loads, strict=True)):
+                evaluate(at_time(value, start), lattice.places[chosen], width, "it")
+    for i, (entry, timed) in enumerate(zip(file.load, scene.loads, strict=True)):
+        load = timed.at(start)
         where = getattr(entry, "where", None)
         if where is not None and load.density is not None:
             with source.at("load", i, "where"):

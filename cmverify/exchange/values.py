@@ -55,16 +55,39 @@ def count(value: Any) -> int:
     return value
 
 
-def scalar(value: Any) -> float | Formula:
-    """A number, or a formula of x and y."""
+def scalar(value: Any, time: bool = False) -> float | Formula:
+    """A number, or a formula of x and y (and of t, if it may depend on `time`)."""
     if not isinstance(value, str):
         if isinstance(value, list | dict):
             raise ValueError(f"must be a number or a formula, not {_short(value)}")
         return number(value)
-    formula = Formula(value)
+    formula = Formula(value, time)
     if formula.condition:
         raise ValueError(f"needs a value, and {value!r} is a condition")
     return formula
+
+
+def scalar_in_time(value: Any) -> float | Formula | InTime:
+    """A number, or a formula of x, y and t."""
+    found = scalar(value, time=True)
+    return InTime(found) if isinstance(found, Formula) and found.timed else found
+
+
+class InTime:
+    """A formula that depends on time, or a vector of such, as a function of x, y and t."""
+
+    def __init__(self, of: Formula | Components) -> None:
+        self.of = of
+
+    def __call__(self, x: np.ndarray, y: np.ndarray, t: float) -> np.ndarray:
+        """Values at one time."""
+        return self.of(x, y, t)
+
+    @property
+    def texts(self) -> list[str]:
+        """The formulas that depend on time."""
+        parts = self.of.parts if isinstance(self.of, Components) else [self.of]
+        return [part.text for part in parts if isinstance(part, Formula) and part.timed]
 
 
 def condition(value: Any) -> Formula:
@@ -78,28 +101,34 @@ def condition(value: Any) -> Formula:
 
 
 class Components:
-    """Components of a vector, each a number or a formula, as a function of x and y."""
+    """Components of a vector, each a number or a formula, as a function of x and y (and t)."""
 
     def __init__(self, parts: list[float | Formula]) -> None:
         self.parts = parts
 
-    def __call__(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    def __call__(self, x: np.ndarray, y: np.ndarray, t: float = 0.0) -> np.ndarray:
         """Values, shape (*x.shape, components)."""
         values = [
-            p(x, y) if isinstance(p, Formula) else np.full(np.shape(x), p) for p in self.parts
+            p(x, y, t) if isinstance(p, Formula) else np.full(np.shape(x), p) for p in self.parts
         ]
         return np.stack(values, axis=-1)
 
+    @property
+    def timed(self) -> bool:
+        """Whether a component depends on t."""
+        return any(isinstance(part, Formula) and part.timed for part in self.parts)
 
-def components(size: int) -> Any:
-    """Validator of a list of `size` numbers or formulas."""
 
-    def check(value: Any) -> Components:
+def components(size: int, time: bool = False) -> Any:
+    """Validator of a list of `size` numbers or formulas, which may depend on `time`."""
+
+    def check(value: Any) -> Components | InTime:
         if not isinstance(value, list):
             raise ValueError(f"must be a list of {size} numbers or formulas, not {_short(value)}")
         if len(value) != size:
             raise ValueError(f"must have {size} components, not {len(value)}")
-        return Components([scalar(part) for part in value])
+        found = Components([scalar(part, time) for part in value])
+        return InTime(found) if found.timed else found
 
     return check
 
@@ -151,7 +180,11 @@ def _schema(**schema: Any) -> WithJsonSchema:
     return WithJsonSchema(schema)
 
 
-_VALUE = {"anyOf": [{"type": "number"}, {"type": "string", "description": "formula of x and y"}]}
+def _formula(of: str) -> dict[str, Any]:
+    return {"anyOf": [{"type": "number"}, {"type": "string", "description": f"formula of {of}"}]}
+
+
+_VALUE, _VALUE_IN_TIME = _formula("x and y"), _formula("x, y and t")
 
 
 def _list(item: dict[str, Any], size: int) -> dict[str, Any]:
@@ -171,7 +204,13 @@ FileName = Annotated[str, BeforeValidator(file_name)]
 Scalar = Annotated[Any, PlainValidator(scalar), _schema(**_VALUE)]
 Condition = Annotated[Any, PlainValidator(condition), _schema(type="string")]
 Vector = Annotated[Any, PlainValidator(components(2)), _schema(**_list(_VALUE, 2))]
-Triple = Annotated[Any, PlainValidator(components(3)), _schema(**_list(_VALUE, 3))]
+ScalarInTime = Annotated[Any, PlainValidator(scalar_in_time), _schema(**_VALUE_IN_TIME)]
+VectorInTime = Annotated[
+    Any, PlainValidator(components(2, time=True)), _schema(**_list(_VALUE_IN_TIME, 2))
+]
+TripleInTime = Annotated[
+    Any, PlainValidator(components(3, time=True)), _schema(**_list(_VALUE_IN_TIME, 3))
+]
 _NUMBER = {"type": "number"}
 Point = Annotated[list[float], BeforeValidator(numbers(2)), _schema(**_list(_NUMBER, 2))]
 Points = Annotated[

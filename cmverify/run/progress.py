@@ -1,7 +1,9 @@
-"""What a terminal shows while cases run."""
+"""What a terminal shows while cases or analyses run."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import TracebackType
 
 from rich.console import Console
@@ -12,11 +14,42 @@ from rich.progress import (
     Progress,
     SpinnerColumn,
     TaskID,
+    TaskProgressColumn,
     TextColumn,
     TimeElapsedColumn,
+    TimeRemainingColumn,
 )
 
 from cmverify.run.runner import Event, Task
+
+
+@contextmanager
+def share_done(console: Console, label: str) -> Iterator[Callable[[float], None]]:
+    """A bar with the time that is left, for a run that tells the share of it that is done.
+
+    It moves to and fro until the run says something, never backwards, and is gone at the end.
+    Nothing is shown where the output is no terminal.
+    """
+    bars = Progress(
+        SpinnerColumn(),
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=24),
+        TaskProgressColumn(),
+        TimeRemainingColumn(),
+        console=console,
+        transient=True,
+        disable=not console.is_terminal,
+    )
+    task = bars.add_task(escape(label), total=None)
+    furthest = 0.0
+
+    def tell(done: float) -> None:
+        nonlocal furthest
+        furthest = max(furthest, done)
+        bars.update(task, total=1.0, completed=furthest)
+
+    with bars:
+        yield tell
 
 
 class LiveProgress:

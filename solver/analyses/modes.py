@@ -29,6 +29,7 @@ from ..operators.mass import inertia
 from ..problem import Description, Discretisation
 from ..problem.rigid import rigid_motions
 from ..result import Result
+from .recording import Progress
 from .registry import Analysis
 
 # Displacements up to which a dense solver is as quick and leaves no doubt.
@@ -131,7 +132,9 @@ class Modes(Result):
         }
 
 
-def solve(scene: Description, count: int, tolerance: float = 1e-8) -> Modes:
+def solve(
+    scene: Description, count: int, tolerance: float = 1e-8, progress: Progress | None = None
+) -> Modes:
     """The lowest elastic modes.
 
     Parameters
@@ -143,6 +146,8 @@ def solve(scene: Description, count: int, tolerance: float = 1e-8) -> Modes:
     tolerance : float
         Of every pair's residual; frequencies err by its square. On large bodies rounding may
         leave more.
+    progress : callable, optional
+        Told the share that is done, as far as convergence lets it be known.
 
     Returns
     -------
@@ -194,7 +199,11 @@ def solve(scene: Description, count: int, tolerance: float = 1e-8) -> Modes:
     small |= count > _MOST
     with one_thread():
         search = _Search(discretisation, mass, rigid, count, tolerance)
-        pairs, checked, prepared = search.directly() if small else search.iteratively(begun)
+        pairs, checked, prepared = (
+            search.directly() if small else search.iteratively(begun, progress)
+        )
+    if progress is not None:
+        progress(1.0)
     vectors = pairs.vectors.T.reshape(count, operator.components, -1)
     unknowns = np.zeros((count, operator.components, discretisation.lattice.count))
     unknowns[:, :, operator.active] = vectors
@@ -282,7 +291,9 @@ class _Search:
             0.0,
         )
 
-    def iteratively(self, begun: float) -> tuple[eigen.Eigenpairs, str, float]:
+    def iteratively(
+        self, begun: float, progress: Progress | None = None
+    ) -> tuple[eigen.Eigenpairs, str, float]:
         """LOBPCG, checked: pairs, how it is known that none is missing, seconds of preparation."""
         pencil = self._pencil()
         prepared = perf_counter() - begun
@@ -291,7 +302,7 @@ class _Search:
                 eigen.definite(pencil)
         except NegativeCurvatureError as error:
             raise self._located(pencil) from error
-        found = eigen.lowest(pencil, self.count, self.tolerance)
+        found = eigen.lowest(pencil, self.count, self.tolerance, progress=progress)
         checked = ""
         for _ in range(_REPEATS):
             self._judge(pencil, found)

@@ -2,7 +2,8 @@
 
 A module of `solver.analyses` or `solver.fracture` takes part by defining ``ANALYSIS``. Its `run` is
 a function of a scene and of keywords; the keywords' names, annotations and defaults are what a
-scene file's table may say (``[modes]`` with ``count = 10``), so that nothing is declared twice.
+scene file's table may say (``[modes]`` with ``count = 10``), so that nothing is declared twice. One
+keyword is not the user's: a run that takes `progress` tells it the share that is done.
 """
 
 from __future__ import annotations
@@ -31,15 +32,27 @@ class Analysis:
         In a sentence.
     run : callable
         (scene, **options) → Result.
+    timed : bool
+        Whether supports and loads may depend on time.
     """
 
     name: str
     says: str
     run: Callable[..., Result]
+    timed: bool = False
 
     @property
     def options(self) -> dict[str, Parameter]:
         """Keywords of `run` after the scene, with annotations (evaluated) and defaults."""
+        return {k: v for k, v in self._keywords.items() if k != "progress"}
+
+    @property
+    def reports(self) -> bool:
+        """Whether `run` tells how far it has come, 0 to 1, to a keyword `progress`."""
+        return "progress" in self._keywords
+
+    @property
+    def _keywords(self) -> dict[str, Parameter]:
         return dict(list(signature(self.run, eval_str=True).parameters.items())[1:])
 
 

@@ -480,6 +480,7 @@ def _asked(
     series: str | None = None,
     checkpoint: str | None = None,
     every: int = 20,
+    progress: Progress | None = None,
 ) -> Transient:
     """`run`, by what a scene file can say."""
     return run(
@@ -492,7 +493,8 @@ def _asked(
         series=series,
         checkpoint=checkpoint,
         every=every,
+        progress=progress,
     )
 
 
-ANALYSIS = Analysis("transient", "Conduction of heat in time.", _asked)
+ANALYSIS = Analysis("transient", "Conduction of heat in time.", _asked, timed=True)

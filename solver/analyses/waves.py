@@ -364,6 +364,7 @@ def _asked(
     series: str | None = None,
     checkpoint: str | None = None,
     every: int = 200,
+    progress: Progress | None = None,
 ) -> Waves:
     """`run`, by what a scene file can say."""
     return run(
@@ -381,7 +382,8 @@ def _asked(
         series=series,
         checkpoint=checkpoint,
         every=every,
+        progress=progress,
     )
 
 
-ANALYSIS = Analysis("waves", "Motion of an elastic body in time.", _asked)
+ANALYSIS = Analysis("waves", "Motion of an elastic body in time.", _asked, timed=True)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import inf, radians
 
+from ..analyses.recording import Progress
 from ..analyses.registry import Analysis
 from ..geometry import Where
 from ..scene import Scene
@@ -38,6 +39,7 @@ def run(
     max_solves: int | None = None,
     tolerance: float = 1e-8,
     checkpoint: str | None = None,
+    progress: Progress | None = None,
 ) -> Growth:
     """Let the scene's cracks grow.
 
@@ -52,6 +54,9 @@ def run(
         The run ends when the furthest tip has gone so far, m.
     no_fail, tension_only, criterion, batch, max_solves, tolerance, checkpoint
         See `grow`.
+    progress : callable, optional
+        Told the share that is done: how near the run has come to the first of the ends that it is
+        given. A body that parts is done earlier.
 
     Raises
     ------
@@ -74,7 +79,32 @@ def run(
         max_solves=max_solves,
         until=None if advance is None else lambda run: bool(run.advance >= advance),
         checkpoint=checkpoint,
+        listen=None if progress is None else _telling(progress, programme, advance, max_solves),
     )
+
+
+def _telling(
+    progress: Progress, programme: Programme, advance: float | None, max_solves: int | None
+) -> Callable[[Growth], None]:
+    """Tells how near a run has come to the nearest of its ends; it never goes back."""
+    furthest = 0.0
+
+    def listen(run: Growth) -> None:
+        nonlocal furthest
+        shares = [furthest]
+        if advance:
+            shares.append(run.advance / advance)
+        if max_solves:
+            shares.append(len(run.solves) / max_solves)
+        if programme.levels is not None:
+            shares.append(run.target / len(programme.levels))
+        elif programme.start < programme.stop < inf:
+            way = programme.stop - programme.start
+            shares.append((run.load_factor - programme.start) / way)
+        furthest = min(1.0, max(shares))
+        progress(furthest)
+
+    return listen
 
 
 ANALYSIS = Analysis("fracture", "Quasi-static growth of cracks, bond by bond.", run)

@@ -47,6 +47,7 @@ def grow(
     monitors: Mapping[str, Callable[[Growth], float]] | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
     every: int = 50,
+    listen: Callable[[Growth], None] | None = None,
 ) -> Growth:
     """Let cracks grow in an elastic scene.
 
@@ -91,6 +92,8 @@ def grow(
         file exists: results are the same to the last bit as without interruption.
     every : int
         Solves between two checkpoints.
+    listen : callable, optional
+        Called with the `Growth` before every batch; it decides nothing.
 
     Returns
     -------
@@ -143,6 +146,8 @@ def grow(
         run.begin()
     saved = len(run.solves)
     while not run.reason:
+        if listen is not None:
+            listen(run)
         # What was asked from outside may be asked otherwise when the run goes on.
         if until is not None and until(run):
             asked = "as asked (until)"

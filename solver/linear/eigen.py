@@ -18,6 +18,7 @@ Whoever calls this pins BLAS to one thread: reductions must not depend on the nu
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -39,6 +40,8 @@ _ROUNDING = 20 * np.finfo(float).eps
 _ROUNDS = (14, 7, 7, 14, 28, 56, 112, 224, 448)
 # Of the search for missing pairs: vectors, and rounds of five iterations at most.
 _SEARCH, _SEARCH_ROUNDS = 3, 8
+# Block iterations that the two-level method usually takes: the first guess of how long it will be.
+_USUAL = 21
 # Residual over λ at which the search knows its lowest value well enough to compare.
 _KNOWN = 0.05
 
@@ -192,7 +195,52 @@ def definite(pencil: Pencil) -> None:
     conjugate_gradients(stiffness, inverse, Task(force, np.zeros_like(force), 1e-6, 200))
 
 
-def lowest(pencil: Pencil, count: int, tolerance: float, guess: Array | None = None) -> Eigenpairs:
+class _Meter:
+    """Tells how far a search has come: its iterations, of those that its convergence promises.
+
+    Parameters
+    ----------
+    progress : callable, optional
+        Told the share that is done.
+    block : int
+        Vectors that are sought at once.
+    """
+
+    def __init__(self, progress: Callable[[float], None] | None, block: int) -> None:
+        self.progress, self.block = progress, block
+        self.corrected, self.expected = 0, float(_USUAL * block)
+
+    def watched(self, correct: LinearOperator) -> LinearOperator:
+        """The preconditioner, counted: it corrects every vector once an iteration."""
+        if self.progress is None:
+            return correct
+
+        def counted(r: Array) -> Array:
+            self.corrected += 1
+            if self.corrected % self.block == 0:
+                self.tell()
+            return np.asarray(correct.matvec(r))
+
+        return LinearOperator(correct.shape, matvec=counted, dtype=np.float64)
+
+    def tell(self) -> None:
+        """The share; the last hundredth is left for what comes after."""
+        assert self.progress is not None
+        self.progress(min(0.99, self.corrected / self.expected))
+
+    def expect(self, residual: float, aim: float) -> None:
+        """Expect as many iterations as the residual, falling as it has, takes to its aim."""
+        if 0.0 < residual < 1.0 and 0.0 < aim < 1.0:
+            self.expected = self.corrected * max(1.0, float(np.log(aim) / np.log(residual)))
+
+
+def lowest(
+    pencil: Pencil,
+    count: int,
+    tolerance: float,
+    guess: Array | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Eigenpairs:
     """The `count` lowest pairs above the rigid motions, and the guards', by LOBPCG.
 
     Parameters
@@ -206,6 +254,8 @@ def lowest(pencil: Pencil, count: int, tolerance: float, guess: Array | None = N
         bodies: λ is a small part of K's entries) that is taken.
     guess : ndarray, shape (n, k), optional
         First vectors, filled up with random ones.
+    progress : callable, optional
+        Told the share that is done, by what convergence promises.
 
     Returns
     -------
@@ -223,6 +273,8 @@ def lowest(pencil: Pencil, count: int, tolerance: float, guess: Array | None = N
     if guess is not None:
         vectors[:, : guess.shape[1]] = guess
     rigid = pencil.normalised() if pencil.rigid.shape[1] else None
+    meter = _Meter(progress, block)
+    correct = meter.watched(correct)
     spent, aim = 0, 1e-7
     found = Eigenpairs(np.zeros(0), vectors, np.zeros(0), 0)
     for most in _ROUNDS:
@@ -236,6 +288,7 @@ def lowest(pencil: Pencil, count: int, tolerance: float, guess: Array | None = N
         enough = np.maximum(tolerance, pencil.attainable(values, vectors))
         if (residuals <= enough)[:count].all():
             return found
+        meter.expect(float(residuals[:count].max()), float(enough[:count].min()))
         # Absolute, over the scale: converged columns rest while the others go on.
         aim = 0.3 * float((enough * values)[:count].min()) / pencil.scale
     raise ConvergenceError(

@@ -84,3 +84,20 @@ def test_what_a_formula_is_given_stays_as_it_was(text):
     result[:] = 99.0
     np.testing.assert_array_equal(x, X)
     np.testing.assert_array_equal(y, Y)
+
+
+def test_time_is_known_where_it_is_allowed():
+    formula = Formula("x*sin(t) + where(t < 1, 0, y)", time=True)
+    assert formula.timed
+    assert not Formula("x + 1", time=True).timed
+    for t in (0.5, 2.0):
+        np.testing.assert_allclose(formula(X, Y, t), X * np.sin(t) + (t >= 1) * Y)
+    assert Formula("cos(t)", time=True)(X, Y, 1.0).shape == X.shape
+    with pytest.raises(FormulaError, match="depends on the time t: only values of supports"):
+        Formula("sin(t)")
+    with pytest.raises(FormulaError, match="may use x and y, t, pi"):
+        Formula("sin(s)", time=True)
+    with pytest.raises(FormulaError, match=r"log\(t\)' in .* at t = 0 s"):
+        Formula("log(t)", time=True)(X, Y, 0.0)
+    with pytest.raises(FormulaError, match=r"at x = \(-1, 0\), t = 3 s"):
+        Formula("sqrt(x)*t", time=True)(X, Y, 3.0)

@@ -238,3 +238,69 @@ def test_conductors_of_current_and_temperatures(tmp_path):
     (tmp_path / "both.toml").write_text(live.replace("potential", "temperature"))
     with pytest.raises(SceneFileError, match="no temperature to prescribe"):
         scene_file.request(tmp_path / "both.toml")
+
+
+IN_TIME = (
+    PLATE.replace("0.1", "0.125")
+    + """
+[material]
+kind = "isotropic"
+E = 1.0
+nu = 0.2
+density = 1.0
+[[support]]
+where = "y < -0.3"
+displacement = ["0.01*sin(3*t)*(1 + x)", 0.0]
+rotation = 0.0
+[[load]]
+kind = "traction"
+value = [0.0, "1e-3*t*x"]
+start = [-0.5, 0.5]
+end = [0.5, 0.5]
+"""
+)
+
+
+def test_formulas_in_time_do_what_functions_do(tmp_path):
+    from solver import ElasticTensor, Load, Scene, Support, rectangle, waves
+
+    path = written(tmp_path, IN_TIME + "[waves]\nend = 1.0\n")
+    told: list[float] = []
+    found = scene_file.request(path).run(told.append)
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+
+    def shake(x, y, t):
+        return np.stack([0.01 * np.sin(3 * t) * (1 + x), 0.0 * y], axis=-1)
+
+    def pull(x, y, t):
+        return np.stack([0.0 * x, 1e-3 * t * x], axis=-1)
+
+    scene = Scene(
+        rectangle(1.0, 1.0),
+        0.125,
+        ElasticTensor.isotropic(1.0, 0.2),
+        [Support.where(lambda x, y: y < -0.3, displacement=shake, rotation=0.0)],
+        [Load.traction(pull, (-0.5, 0.5), (0.5, 0.5))],
+        m=3,
+        density=1.0,
+    )
+    same = waves.run(scene, (0.0, 0.0), 1.0)
+    np.testing.assert_allclose(found.displacement, same.displacement, rtol=1e-12, atol=1e-16)
+    assert np.abs(found.displacement).max() > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "end", "says"),
+    [
+        ("", "", "", r"toml:17: \[support #1\].*statics knows no time.*\[transient\] or \[waves\]"),
+        ("", "", "[modes]\ncount = 2", r"toml:17: \[support #1\].*\[modes\] knows no time"),
+        ("", "", "[waves]\nend = 1\nvelocity = ['t', 0]", r"toml:26: \[waves\].*time t: only"),
+        ("y < -0.3", "y < t", "[waves]\nend = 1", r"toml:16: \[support #1\].*time t: only"),
+        ("3*t)", "3/t)", "[waves]\nend = 1", r"toml:17: \[support #1\].*no finite real.*t = 0 s"),
+        ("1e-3*t", "sqrt(0.4-t)", "[waves]\nend = 1", r"toml:21: \[load #1\].*t = 0\.5 s"),
+    ],
+)
+def test_times_that_make_no_sense(tmp_path, old, new, end, says):
+    with pytest.raises(SceneFileError, match=says):
+        scene_file.request(written(tmp_path, IN_TIME.replace(old, new) + end + "\n")).run()

@@ -23,7 +23,13 @@ def test_options_are_the_keywords_of_the_function():
     assert options["tolerance"].annotation is float
     assert options["tolerance"].default == 1e-10
     assert analyses()["fracture"].options["G1"].default is Parameter.empty
-    assert all("scene" not in one.options for one in analyses().values())
+    assert all(not {"scene", "progress"} & set(one.options) for one in analyses().values())
+
+
+def test_who_knows_time_and_who_tells_how_far_it_is():
+    known = analyses()
+    assert {name for name, one in known.items() if one.timed} == {"transient", "waves"}
+    assert {name for name, one in known.items() if one.reports} == set(known) - {"solve"}
 
 
 def test_an_analysis_runs_on_a_scene():

@@ -29,7 +29,12 @@ def test_the_same_run(strip):
     wanted = fracture.grow(
         strip, Toughness(2.0, 1.0, axis=np.pi / 2), Programme(), until=lambda run: run.advance >= 2
     )
-    found = analyses()["fracture"].run(strip, G1=2.0, G2=1.0, axis_degrees=90.0, advance=2.0)
+    told: list[float] = []
+    found = analyses()["fracture"].run(
+        strip, G1=2.0, G2=1.0, axis_degrees=90.0, advance=2.0, progress=told.append
+    )
+    assert told == sorted(told)
+    assert 0.2 < max(share for share in told if share < 1) < told[-1] == 1.0
     np.testing.assert_array_equal(found.breaks, wanted.breaks)
     assert {"damage", "loose", "displacement"} <= set(found.fields())
     assert set(found.tables()) == {"history", "path"}

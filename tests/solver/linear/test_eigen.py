@@ -50,6 +50,16 @@ def test_multiple_values_come_with_all_their_copies(square):
     assert not eigen.missing(square[0], found, 12)[0].shape[1]
 
 
+def test_a_search_says_how_far_it_is_and_finds_the_same(square):
+    told: list[float] = []
+    found = eigen.lowest(square[0], 12, 1e-8, progress=told.append)
+    np.testing.assert_array_equal(found.values, eigen.lowest(square[0], 12, 1e-8).values)
+    assert len(told) > 10
+    # What convergence promises comes to about the whole.
+    assert 0.0 < told[0] < 0.2
+    assert 0.6 < told[-1] < 1.0
+
+
 @pytest.mark.parametrize("lost", [0, 1, 5])
 def test_a_lost_copy_is_noticed(square, lost):
     found = eigen.lowest(square[0], 8, 1e-8)
