@@ -61,6 +61,7 @@ __all__ = [
     "recovery",
     "rectangle",
     "strained",
+    "thermoelastic",
     "transient",
     "waves",
 ]

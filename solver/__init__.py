@@ -4,7 +4,7 @@ Scene -> Lattice + Family -> Moduli + Bonds -> Operator -> statics -> Solution -
 """
 
 from . import fracture, recovery
-from .analyses import modes, transient, waves
+from .analyses import modes, thermoelastic, transient, waves
 from .errors import (
     CalibrationError,
     ConvergenceError,
@@ -72,6 +72,7 @@ __all__ = [
     "recovery",
     "rectangle",
     "strained",
+    "thermoelastic",
     "transient",
     "waves",
 ]

@@ -12,6 +12,7 @@
 `tetrachiral`          effective tensor of the block lattice
 `christoffel`          plane wave speeds
 `cosserat`             size effects of polar strips, shear waves of polar solids
+`thermoelastic`        adiabatic changes, thermoelastic damping
 =====================  ======================================================================
 """
 
@@ -26,6 +27,7 @@ from references.analytic import (
     lekhnitskii,
     potential_drop,
     tetrachiral,
+    thermoelastic,
     voigt,
 )
 
@@ -40,5 +42,6 @@ __all__ = [
     "lekhnitskii",
     "potential_drop",
     "tetrachiral",
+    "thermoelastic",
     "voigt",
 ]

@@ -11,9 +11,18 @@ Why the mean: a temperature linear in x makes E linear, E is the strain of a qua
 u, and the stretch of a bond in a quadratic field is n·ε·n at its middle, its shear n·ε·t there if
 the particles turn by ½ curl u, which is linear. Both are those of Ē: no bond is strained beyond,
 whatever the tensor A. (An E that is not linear is the strain of no displacement in general, and
-free expansion is then not free of stress.) A bond that ends at the surface takes the displacement
-there from a straight line between two nodes, and its point of contact is not its middle: it is
-exact for a uniform temperature only.
+free expansion is then not free of stress.)
+
+A bond that ends at the surface takes the displacement there from a straight line between two nodes,
+and its point of contact is not its middle, so that free expansion strains it by more than Ē. From
+the gradient of E follow, as of any displacement, ω,k = E2k,1 − E1k,2 and u_i,jk = E_ij,k + E_ik,j −
+E_jk,i; with the edge's direction τ and length L, the end at the share p of it, and the arm a of the
+rotation there,
+
+    ℓ e = ℓ n·Ē·n + n·c   and   ℓ n·Ē·t + t·c + ℓ (½ ℓ − a) ω,n,      c = ½ p (1 − p) L² u,ττ.
+
+In a polar solid free expansion under a linear temperature bends bonds, too, which no temperature
+does by itself: χ is mechanical, and such a body bears couple stress.
 """
 
 from __future__ import annotations
@@ -26,7 +35,7 @@ from ..arrays import Array, Indices
 from ..bonds import Bonds, EndedBonds
 from ..bonds.ended import SHORTEST
 from ..material import Moduli
-from ..material.strains import homogeneous_stretch
+from ..material.strains import elongations, homogeneous_stretch
 from .surface_stiffness import (
     BondStrains,
     SurfaceStiffness,
@@ -70,11 +79,62 @@ class Eigenstrain:
         ends = ended.outline.edges[ended.edge]
         there = self._at(ends, ended.position)
         family = self.bonds.family
-        of = self.moduli.homogeneous(family.normal[ended.offset].T)
-        found = np.einsum("avk,vk->ak", of, 0.5 * (self.particles[:, ended.particle] + there))
+        normal, length = family.normal[ended.offset].T, ended.length
+        of = self.moduli.homogeneous(normal)
+        mean = np.einsum("avk,vk->ak", of, 0.5 * (self.particles[:, ended.particle] + there))
+        slope = self.gradient(ended)[..., ended.particle]
+        sag = _sag(slope, ended.outline.nodes[ends], ended.position)
+        arm = length - 0.5 * family.length[ended.offset]
+        found = length * mean + self._beyond(normal, slope, sag, length * (0.5 * length - arm))
         # The shortest bonds measure their strain over a longer stretch.
-        shortest = SHORTEST * family.spacing
-        return np.asarray(found * (ended.length / np.maximum(ended.length, shortest)))
+        return np.asarray(found / np.maximum(length, SHORTEST * family.spacing))
+
+    def _beyond(self, normal: Array, slope: Array, sag: Array, lever: Array) -> Array:
+        """What ℓ e has beyond the mean of both ends, shape (strains, k).
+
+        `sag` (2, k) is how much farther apart the ends are than the displacement at their places,
+        `lever` (k,) is ℓ (½ ℓ − a).
+        """
+        n1, n2 = normal
+        turn = n1 * (slope[0, 1, 0] - slope[0, 0, 1]) + n2 * (slope[1, 1, 0] - slope[1, 0, 1])
+        # A bond that turns like its ends is not sheared: the lever counts against the turn.
+        difference = np.concatenate([sag, np.zeros((1, sag.shape[1]))])
+        return elongations(self.moduli.strains, normal, difference, -lever * turn)
+
+    def gradient(self, ended: EndedBonds) -> Array:
+        """∂E_ij/∂x_k at the particles as [i, j, k, particle], by least squares over the bonds.
+
+        Exact where E is linear; across cracks nothing counts.
+        """
+        bonds, family = self.bonds, self.bonds.family
+        lattice, count = bonds.lattice, bonds.lattice.count
+        rows, columns = lattice.rows_columns
+        grid = lattice.to_grid(self.particles)
+        moment, slope = np.zeros((2, 2, count)), np.zeros((3, 2, count))
+        for o, (dx, dy) in enumerate(family.offsets):
+            weight = family.weight[o] * (bonds.strength(o) > 0)
+            difference = grid[:, rows + dy, columns + dx] - self.particles
+            moment += weight * np.multiply.outer(family.normal[o], family.normal[o])[..., None]
+            slope += (weight / family.length[o]) * (
+                difference[:, None] * family.normal[o][None, :, None]
+            )
+        there = self._at(ended.outline.edges[ended.edge], ended.position)
+        difference = there - self.particles[:, ended.particle]
+        normal, weight = family.normal[ended.offset].T, family.weight[ended.offset]
+        # As whole bonds of the same slope, weighted by the square of what there is of them.
+        whole = family.length[ended.offset]
+        more = weight * (ended.length / whole) ** 2 * normal[:, None] * normal[None]
+        rise = weight * ended.length / whole**2
+        for i in range(2):
+            for j in range(2):
+                moment[i, j] += np.bincount(ended.particle, more[i, j], minlength=count)
+            for v in range(3):
+                part = rise * difference[v] * normal[i]
+                slope[v, i] += np.bincount(ended.particle, part, minlength=count)
+        inverse = np.linalg.pinv(np.moveaxis(moment, 2, 0), hermitian=True)
+        found = np.einsum("vkp,pkl->vlp", slope, inverse)
+        e11, e22, e12 = found[0], found[1], 0.5 * found[2]
+        return np.stack([np.stack([e11, e12]), np.stack([e12, e22])])
 
     def _at(self, ends: Indices, position: Array) -> Array:
         """At points along the outline's edges, shape (3, k)."""
@@ -122,6 +182,13 @@ class Eigenstrain:
             edge, position = ended.chords.edge, ended.chords.position
             middle = 0.5 * sum(self._at(outline.edges[edge[:, k]], position[:, k]) for k in (0, 1))
             free = np.einsum("avk,vk->ak", moduli.homogeneous(normal), middle)
+            length = ended.chords.length
+            corners = outline.nodes[outline.edges[edge]]
+            _, nearest = self.bonds.lattice.tree.query(corners.mean(axis=(1, 2)))
+            slope = self.gradient(ended)[..., nearest]
+            first, last = (_sag(slope, corners[:, k], position[:, k]) for k in (0, 1))
+            lever = length * (0.5 * length - ended.chords.arm[:, 1])
+            free += self._beyond(normal, slope, last - first, lever) / length
             total = total + strain.T @ (weight * free.ravel())
         skin = membrane(ended, family, moduli, number)
         if skin is not None:
@@ -132,3 +199,21 @@ class Eigenstrain:
         on_nodes = np.zeros((c, len(outline.nodes)))
         on_nodes[:, surface.nodes] = total.reshape(c, -1)
         return on_particles, on_nodes
+
+
+def _sag(slope: Array, ends: Array, position: Array) -> Array:
+    """How far a straight line between nodes runs from a displacement of strain E, shape (2, k).
+
+    Parameters
+    ----------
+    slope : ndarray, shape (2, 2, 2, k)
+        ∂E_ij/∂x_k.
+    ends : ndarray, shape (k, 2, 2)
+        Places of the two nodes.
+    position : ndarray, shape (k,)
+        Between them, 0 to 1.
+    """
+    along = (ends[:, 1] - ends[:, 0]).T
+    bend = 2 * np.einsum("ijkb,jb,kb->ib", slope, along, along)
+    bend -= np.einsum("jkib,jb,kb->ib", slope, along, along)
+    return np.asarray(0.5 * position * (1 - position) * bend)

@@ -6,12 +6,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from solver import (
+    Crack,
     ElasticTensor,
     ExpansionTensor,
     Load,
+    PolarTensor,
     Scene,
     SceneError,
     Support,
+    polygon,
     recovery,
     rectangle,
 )
@@ -24,8 +27,13 @@ STEP = 0.1
 
 
 def at(i, j):
-    """One particle."""
-    return lambda x, y: (abs(x - (i + 0.5) * STEP) < 0.01) & (abs(y - (j + 0.5) * STEP) < 0.01)
+    """The particle nearest to the middle of a cell."""
+
+    def where(x, y):
+        away = np.hypot(x - (i + 0.5) * STEP, y - (j + 0.5) * STEP)
+        return np.arange(len(x)) == np.argmin(away)
+
+    return where
 
 
 FREE = (Support.where(at(0, 0), displacement=0.0), Support.where(at(3, 0), u2=0.0))
@@ -53,16 +61,24 @@ def oblique(x, y):
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("surface", SURFACES)
 def test_uniform_and_linear_temperatures_leave_a_free_body_without_stress(surface, seed):
-    """Linear ones but for bonds that end between two nodes of the surface."""
+    """Whatever the tensor, edges along the lattice, across it and round, notched and cracked."""
     rng = np.random.default_rng(seed)
     root = rng.normal(size=(3, 3))
     # C66 well above C12, so that every bond is positive or nearly so.
     material = ElasticTensor(0.3 * root @ root.T + np.diag([3.0, 3.0, 2.0]))
     expansion = tensor(seed)
-    changes = [1.3] if surface == "extrapolated" else [1.3, oblique]
-    for change in changes:
-        for body in (PLATE, round_body(0.55)):
-            solution = heated(material, change, expansion, surface=surface, body=body)
+    crack = Crack((-0.6, 0.0), (-0.12, 0.13))
+    for change in (1.3, oblique):
+        for body, cracks in (
+            (PLATE, []),
+            (PLATE, [crack]),
+            (rectangle(1.04, 0.77), []),
+            (round_body(0.55), []),
+            (polygon([(-0.5, -0.5), (0.6, -0.4), (0.2, 0.0), (0.5, 0.5), (-0.5, 0.4)]), []),
+        ):
+            solution = heated(
+                material, change, expansion, surface=surface, body=body, cracks=cracks
+            )
             assert np.abs(recovery.stress(solution)).max() < 1e-10 * size(material, expansion)
             assert np.abs(solution.displacement).max() > 0.1 * np.abs(expansion.matrix).max()
     # The strain is that of the solid.
@@ -70,6 +86,33 @@ def test_uniform_and_linear_temperatures_leave_a_free_body_without_stress(surfac
     strain = 0.5 * (gradient + gradient.swapaxes(1, 2))
     wanted = np.broadcast_to(1.3 * expansion.matrix, strain.shape)
     np.testing.assert_allclose(strain, wanted, atol=1e-9)
+
+
+def test_plane_strain_is_free_of_stress_in_the_plane():
+    for change in (1.3, oblique):
+        for surface in SURFACES:
+            material = ElasticTensor.isotropic(1.0, 0.2, "strain")
+            expansion = ExpansionTensor.isotropic(0.7, "strain", 0.2)
+            solution = heated(material, change, expansion, surface=surface)
+            assert np.abs(recovery.stress(solution)).max() < 1e-10 * size(material, expansion)
+            if change is not oblique:
+                # (1 + ν) α T, not α T.
+                slope = recovery.displacement_gradient(solution)[:, 0, 0]
+                np.testing.assert_allclose(slope, 1.2 * 0.7 * change, rtol=1e-9)
+
+
+def test_a_polar_body_bears_couple_stress_under_a_linear_temperature():
+    """Points turn by ½ curl u, which no temperature asks for: κ = ∇ω is mechanical."""
+    solid = ElasticTensor.isotropic(1.0, 0.2)
+    polar = PolarTensor(solid, 1e-6 * np.eye(2))
+    expansion = ExpansionTensor.isotropic(1.0)
+    uniform = heated(polar, 1.3, expansion, surface="extrapolated")
+    assert np.abs(recovery.couple_stress(uniform)).max() < 1e-15
+    linear = heated(polar, lambda x, y: x, expansion, surface="extrapolated")
+    # E11 = E22 = x: ω,1 = E21,1 − E11,2 = 0, ω,2 = E22,1 − E12,2 = 1.
+    inside = np.abs(linear.points).max(axis=1) < 0.1
+    found = recovery.couple_stress(linear)[inside] / 1e-6
+    np.testing.assert_allclose(found, np.broadcast_to([0.0, 1.0], found.shape), atol=1e-3)
 
 
 @exact
