@@ -38,6 +38,7 @@ ELSEWHERE = {
     "cmverify/faults/command.py": "tests/cmverify/faults/test_table.py",
     "cmverify/faults/in_judges.py": "tests/cmverify/faults/test_table.py",
     "cmverify/faults/in_references.py": "tests/cmverify/faults/test_table.py",
+    "cmverify/faults/in_dynamics.py": "tests/cmverify/faults/test_table.py",
     "cmverify/faults/in_solver.py": "tests/cmverify/faults/test_table.py",
     "cmverify/faults/page.py": "tests/cmverify/faults/test_table.py",
     "cmverify/faults/registry.py": "tests/cmverify/faults/test_table.py",
