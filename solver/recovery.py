@@ -96,6 +96,7 @@ class _Ends:
     length: Array
     difference: Array
     strains: Array
+    phase: NDArray[np.int64] | None
 
     def add(self, values: Array, result: Array) -> None:
         """Add values (..., bonds) to their particles' in `result`, shape (..., N)."""
@@ -122,7 +123,16 @@ def _ends(solution: State) -> _Ends | None:
         strains = strains - body.eigenstrain.of_ended(ended)
     weight = family.weight[ended.offset] * family.cell_area
     strength = np.ones(len(ended)) if ended.factor is None else ended.factor
-    return _Ends(ended.particle, ended.offset, weight, strength, ended.length, difference, strains)
+    return _Ends(
+        ended.particle,
+        ended.offset,
+        weight,
+        strength,
+        ended.length,
+        difference,
+        strains,
+        ended.phase,
+    )
 
 
 def _aside(solution: State, result: Array) -> Array:
@@ -141,14 +151,14 @@ def _need(solution: State, physics: Physics, what: str) -> None:
 
 def _force(pair: _Pair, moduli: Moduli) -> Array:
     """Pairwise force density f_n n + f_t t with its strength (Eq. 21), or k g n, shape (2, N)."""
-    stiffness = moduli.stiffness[:, pair.index]
-    return pair.strength * np.einsum("a,ai,an->in", stiffness, pair.directions, pair.strains)
+    stress = moduli.of_offset(pair.index) * pair.strains
+    return pair.strength * np.einsum("ai,an->in", pair.directions, stress)
 
 
 def _ended_force(ends: _Ends, moduli: Moduli, family: Family) -> Array:
     """The same of the bonds that end at the surface, shape (2, bonds)."""
     along = directions(moduli.strains, family.normal[ends.offset].T)
-    stiffness = ends.strength * moduli.stiffness[:, ends.offset]
+    stiffness = ends.strength * moduli.of_bonds(ends.offset, ends.phase)
     return np.einsum("ak,aik,ak->ik", stiffness, along, ends.strains)
 
 
@@ -306,11 +316,12 @@ def strain_energy_density(solution: State) -> Array:
     moduli, length = body.moduli, body.moduli.pair_length(body.family)
     result = np.zeros(body.lattice.count)
     for pair in _pairs(solution):
-        density = length[pair.index] * (moduli.stiffness[:, pair.index] @ pair.strains**2)
+        energy = moduli.of_offset(pair.index) * pair.strains**2
+        density = length[pair.index] * energy.sum(axis=0)
         result += 0.25 * pair.weight * pair.strength * density
     if (ends := _ends(solution)) is not None:
         o = ends.offset
-        density = length[o] * (moduli.stiffness[:, o] * ends.strains**2).sum(axis=0)
+        density = length[o] * (moduli.of_bonds(o, ends.phase) * ends.strains**2).sum(axis=0)
         ends.add(0.25 * ends.weight * ends.strength * density, result)
     return _aside(solution, result)
 

@@ -109,6 +109,11 @@ class Breakable:
         criterion: Criterion = "total",
     ) -> None:
         moduli, family = discretisation.moduli, discretisation.family
+        if discretisation.scene.inclusions:
+            raise SceneError(
+                "cracks do not grow in a body with inclusions: bonds that end at an interface "
+                "have no strength"
+            )
         if not moduli.physics.breakable or not isinstance(moduli, ElasticModuli):
             raise SceneError(
                 f"bonds break in elastic bodies only: {moduli.physics.name} has no bond energy"
