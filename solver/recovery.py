@@ -135,6 +135,12 @@ def _ends(solution: State) -> _Ends | None:
     )
 
 
+def _per_volume(solution: State, result: Array) -> Array:
+    """`result` (..., N) over the thickness: what acts in the solid, not in the plane."""
+    thick = solution.discretisation.thickness
+    return result if thick is None else result / thick
+
+
 def _aside(solution: State, result: Array) -> Array:
     """`result` (N, ...) with NaN at the particles that were set aside."""
     result[np.isnan(solution.unknowns).any(axis=0)] = np.nan
@@ -216,7 +222,7 @@ def stress(solution: State, rule: Literal["plane", "family"] | None = None) -> A
                     result[:, axis] += share * force[:, rows + start[1], columns + start[0]]
     else:
         raise ValueError(f"unknown stress rule {rule!r}; known: plane, family")
-    return _aside(solution, np.moveaxis(result, 2, 0))
+    return _aside(solution, np.moveaxis(_per_volume(solution, result), 2, 0))
 
 
 def _crossings(offset: NDArray[np.int64], axis: int) -> Iterator[tuple[tuple[int, int], float]]:
@@ -298,7 +304,7 @@ def _flow(solution: State, rule: str) -> Array:
     if (ends := _ends(solution)) is not None:
         share = _share(rule, ends.strains[0])
         ends.add(-share * ends.weight * _ended_force(ends, body.moduli, body.family), result)
-    return _aside(solution, result.T)
+    return _aside(solution, _per_volume(solution, result).T)
 
 
 def _share(rule: str, gradient: Array) -> Array:
@@ -323,7 +329,7 @@ def strain_energy_density(solution: State) -> Array:
         o = ends.offset
         density = length[o] * (moduli.of_bonds(o, ends.phase) * ends.strains**2).sum(axis=0)
         ends.add(0.25 * ends.weight * ends.strength * density, result)
-    return _aside(solution, result)
+    return _aside(solution, _per_volume(solution, result))
 
 
 def damage(solution: State) -> Array:
@@ -406,7 +412,7 @@ def couple_stress(solution: State) -> Array:
         o = ends.offset
         share = 0.5 * ends.weight * ends.strength * family.length[o] * bending[o]
         ends.add(family.normal[o].T * (share * ends.strains[place]), result)
-    return _aside(solution, result.T)
+    return _aside(solution, _per_volume(solution, result).T)
 
 
 def _stresses(solution: State) -> dict[str, Array]:

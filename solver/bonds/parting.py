@@ -209,14 +209,20 @@ def _split(
         # The edge that starts there gets the copy.
         edges[after[0], 0] = count
         nodes = np.vstack([outline.nodes, outline.nodes[node]])
-        ended = replace(ended, outline=Outline(nodes, edges, face))
+        joints = np.append(outline.joints, outline.joints[node])
+        ended = replace(ended, outline=Outline(nodes, edges, face, outline.owned, joints))
         pair = int(before[0]), int(after[0])
         return _sided(ended, pair, across, lattice), np.append(origin, -1)
     place = (1 - position) * outline.nodes[a] + position * outline.nodes[b]
     nodes = np.vstack([outline.nodes, place, place])
     edges[edge] = a, count
     edges = np.vstack([edges, [count + 1, b]])
-    more = Outline(nodes, edges, np.append(face, face[edge]))
+    owned = None if outline.owned is None else np.append(outline.owned, outline.owned[edge])
+    joints = np.append(outline.joints, [False, False])
+    more = Outline(nodes, edges, np.append(face, face[edge]), owned, joints)
+    if ended.edge_factor is not None:
+        both = np.vstack([ended.edge_factor, ended.edge_factor[edge]])
+        ended = replace(ended, edge_factor=both)
 
     def moved(which: Indices, where: Array) -> tuple[Indices, Array]:
         mine, beyond = which == edge, (which == edge) & (where > position)

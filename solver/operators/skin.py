@@ -113,8 +113,8 @@ def thickness(
 ) -> Array:
     """e E_τ of some edges of the outline, shape (len(edges),), N/m (or W/K) per unit thickness.
 
-    Zero on the faces of cracks. `factors` on the moduli, (edges of the outline, family size / 2). Of
-    a body of several phases each edge has its own phase's.
+    Zero on the faces of cracks. `factors` on the moduli, (edges of the outline, family size / 2).
+    Of a body of several phases each edge has its own phase's.
     """
     result = np.zeros(len(edges))
     if outline.phase is not None and len(moduli.each) > 1:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from numbers import Real
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 from ..arrays import Mask
 from ..bonds import Bonds, Factors, Surface, check_surface
@@ -26,6 +26,7 @@ from ..material import (
 )
 from ..material.influence import influence
 from ..material.physics import Physics
+from . import thickness
 from .conditions import Load, Support
 from .inclusions import Inclusion, check
 
@@ -75,6 +76,9 @@ class Description:
     inclusions : sequence of Inclusion
         Parts of the body that are of other solids, bonded to the rest. Bonds end at the
         interfaces, whose nodes both sides share, with every treatment of surfaces.
+    thickness : number or function of (x, y), optional
+        m; see `solver.problem.thickness`. Without it, and without any of an inclusion, everything
+        is per unit thickness; with it forces, energies and currents are those of the body.
 
     Raises
     ------
@@ -101,6 +105,7 @@ class Description:
     heat_capacity: float | None = None
     factors: Callable[[Bonds, Moduli], Factors] | None = None
     inclusions: Sequence[Inclusion] = ()
+    thickness: float | Callable[..., Any] | None = None
 
     def __post_init__(self) -> None:
         check_surface(self.surface)
@@ -141,6 +146,7 @@ class Description:
             if load.kind not in self.physics.loads:
                 raise SceneError(f"a {load.kind} does not act on {self.physics.adjective} body")
         check(self)
+        thickness.check(self)
 
     @property
     def physics(self) -> Physics:

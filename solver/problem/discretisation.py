@@ -29,7 +29,7 @@ from ..geometry import (
 from ..material import Family, Moduli, Stability
 from ..operators import BondOperator
 from ..operators.eigenstrain import Eigenstrain
-from . import cautions, inclusions, leads, mechanisms
+from . import cautions, inclusions, leads, mechanisms, thickness
 from . import constraints as constraints_of
 from .conditions import evaluate
 from .constraints import Constraints
@@ -146,6 +146,8 @@ class Discretisation:
                 outline = bonds.ended.outline
             if scene.factors is not None:
                 bonds = bonds.scaled(scene.factors(bonds, moduli))
+            if (thick := thickness.factors(scene, lattice, bonds)) is not None:
+                bonds = bonds.scaled(thick)
             _hold_edges(scene, bonds, moduli)
             operator = BondOperator(bonds, moduli, prescribed)
             loose, why = mechanisms.find(
@@ -222,16 +224,24 @@ class Discretisation:
         return found
 
     def storage(self, name: str) -> Array:
-        """`volumes` times the density (or heat capacity) of each particle over the scene's own.
+        """`volumes` times thickness and density (or heat capacity) over the scene's own, (N,).
 
         Parameters
         ----------
         name : {"density", "heat_capacity"}
         """
+        found = self.volumes if self.thickness is None else self.volumes * self.thickness
         if self.bonds.phases is None:
-            return self.volumes
+            return found
         shares = inclusions.shares(self.scene, name)
-        return np.asarray(self.volumes * shares[self.bonds.phases.of])
+        return np.asarray(found * shares[self.bonds.phases.of])
+
+    @property
+    def thickness(self) -> Array | None:
+        """Thickness of every particle, shape (N,), m; None where all is per unit thickness."""
+        if not thickness.varies(self.scene):
+            return None
+        return thickness.of_particles(self.scene, self.lattice)
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
@@ -359,6 +369,7 @@ def _loads(scene: Description, lattice: Lattice, moduli: Moduli) -> Array:
         if item.density is None:
             continue
         mask, density = item.density(lattice, scene.surface == "extrapolated")
+        density = thickness.scaled(density, scene, lattice, np.nonzero(mask)[0])
         for column, unknown in enumerate(physics.loads[item.kind]):
             if unknown >= moduli.components:
                 raise SceneError(f"a body {item.kind} {physics.missing[unknown]}")
@@ -397,7 +408,7 @@ def edge_loads(
     else:
         cracks = CrackSet.joined(Frame.of(near), moved, Body.of(near))
         outline = Outline.of(near.region, cracks, near.spacing, sharp_tips)
-    return [edge(outline, near.shift) for edge in edges]
+    return [thickness.loaded(scene, edge(outline, near.shift)) for edge in edges]
 
 
 def _share_out(
@@ -460,6 +471,8 @@ def _concentrate(
         if item.points is None:
             continue
         places, force = item.points(scene.spacing)
+        if thickness.varies(scene):
+            force = force * thickness.at(scene, places)[:, None]
         places, force = places - near.shift, force.T / scene.spacing**2
         unknowns = scene.physics.loads[item.kind]
         inside = np.ones(len(places), dtype=bool)

@@ -22,6 +22,7 @@ from ..material import (
     require_admissible,
     together,
 )
+from . import thickness
 
 if TYPE_CHECKING:
     from .description import Description
@@ -41,12 +42,15 @@ class Inclusion:
         ρ, kg/m³; that of the scene by default.
     heat_capacity : float, optional
         J/(m³ K); that of the scene by default.
+    thickness : float, optional
+        m; that of the scene by default. A groove is an inclusion of the same material.
     """
 
     region: Region
     material: Material
     density: float | None = None
     heat_capacity: float | None = None
+    thickness: float | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.region, Region):
@@ -124,7 +128,12 @@ def solids(scene: Description, family: Family) -> tuple[tuple[Moduli, ...], Stab
             moduli = calibrated(family, material, scene.calibration, scene.law)
             known[id(material)] = moduli, require_admissible(family, moduli)
     found = [known[id(material)] for material in materials]
-    return tuple(m for m, _ in found), together(tuple(s for _, s in found))
+    thick = thickness.of_phases(scene)
+    each = [
+        moduli if t == 1.0 else moduli.scaled(np.full(family.size, t))
+        for (moduli, _), t in zip(found, thick, strict=True)
+    ]
+    return tuple(each), together(tuple(s for _, s in found))
 
 
 def mixed(each: Sequence[Moduli], phases: Phases | None) -> Moduli:

@@ -184,7 +184,7 @@ def test_masses_and_capacities_are_those_of_the_phases():
     share = Discretisation.of(scene, free=True).storage("density")
     area = np.pi * 0.31**2
     assert share.sum() * 0.05**2 == pytest.approx(1.03 - area + 2.5 * area, rel=1e-4)
-    assert modes.run(scene, 3).frequencies.min() > 0
+    assert modes.solve(scene, 3).frequencies.min() > 0
     # Half a bar that stores four times as much warms by a quarter in a short pulse.
     bar = Scene(
         rectangle(1.0, 0.2),
