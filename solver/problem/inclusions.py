@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from ..errors import SceneError
 from ..geometry import Lattice, Phases, Region
 from ..geometry.phases import moved
 from ..material import (
+    AngularLaw,
+    Calibration,
     Family,
     Material,
     Mixture,
@@ -22,10 +24,9 @@ from ..material import (
     require_admissible,
     together,
 )
+from ..material.physics import Physics
 from . import thickness
-
-if TYPE_CHECKING:
-    from .description import Description
+from .thickness import Composite
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,24 @@ class Inclusion:
                 )
 
 
-def check(scene: Description) -> None:
+class _Scene(Composite, Protocol):
+    """What else of a scene is asked."""
+
+    @property
+    def material(self) -> Material: ...
+    @property
+    def physics(self) -> Physics: ...
+    @property
+    def calibration(self) -> Calibration: ...
+    @property
+    def law(self) -> AngularLaw | None: ...
+    @property
+    def loads(self) -> Sequence[Any]: ...
+    @property
+    def broken(self) -> Any: ...
+
+
+def check(scene: _Scene) -> None:
     """Refuse inclusions that do not fit their scene.
 
     Raises
@@ -104,7 +122,7 @@ def check(scene: Description) -> None:
         )
 
 
-def phases_of(scene: Description, lattice: Lattice) -> Phases | None:
+def phases_of(scene: _Scene, lattice: Lattice) -> Phases | None:
     """The phases of a scene's body, None if it is of one."""
     if not scene.inclusions:
         return None
@@ -114,7 +132,7 @@ def phases_of(scene: Description, lattice: Lattice) -> Phases | None:
     return Phases(near, moved(regions, (-x, -y), near.grid))
 
 
-def solids(scene: Description, family: Family) -> tuple[tuple[Moduli, ...], Stability]:
+def solids(scene: _Scene, family: Family) -> tuple[tuple[Moduli, ...], Stability]:
     """Moduli of every solid, the scene's own first, and how stable they are together.
 
     Raises
@@ -141,7 +159,7 @@ def mixed(each: Sequence[Moduli], phases: Phases | None) -> Moduli:
     return each[0] if phases is None else Mixture(tuple(each), phases.of)
 
 
-def shares(scene: Description, name: str) -> Array:
+def shares(scene: _Scene, name: str) -> Array:
     """Density, or heat capacity, of every phase relative to the scene's own, shape (phases,)."""
     own = getattr(scene, name)
     each = [getattr(inclusion, name) for inclusion in scene.inclusions]

@@ -15,9 +15,10 @@ breaking a bond takes. With the thickness in m, forces and energies are then N a
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from functools import cache
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,14 +31,31 @@ from ..geometry import Lattice
 from ..geometry.edge_quadrature import Quadrature
 from .conditions import evaluate
 
-if TYPE_CHECKING:
-    from .description import Description
-
 # Share of a cell within an edge at which its thickness is asked.
 _WITHIN = 1e-3
 
 
-def check(scene: Description) -> None:
+class Composite(Protocol):
+    """What of a scene is asked here and by `inclusions`, which lie below it."""
+
+    @property
+    def spacing(self) -> float:
+        """Δx, m."""
+
+    @property
+    def thickness(self) -> float | Callable[..., Any] | None:
+        """Of the body, m."""
+
+    @property
+    def inclusions(self) -> Sequence[Any]:
+        """Parts of other solids, `solver.problem.inclusions.Inclusion`."""
+
+    @property
+    def factors(self) -> Callable[..., Any] | None:
+        """On single bonds."""
+
+
+def check(scene: Composite) -> None:
     """Refuse what is no thickness.
 
     Raises
@@ -61,19 +79,19 @@ def check(scene: Description) -> None:
         raise SceneError("factors on single bonds are not known with a thickness that varies")
 
 
-def varies(scene: Description) -> bool:
+def varies(scene: Composite) -> bool:
     """Whether the scene says anything of a thickness."""
     return scene.thickness is not None or any(i.thickness is not None for i in scene.inclusions)
 
 
-def of_phases(scene: Description) -> Array:
+def of_phases(scene: Composite) -> Array:
     """Thickness of every phase as far as it is a number, shape (phases,); 1 where it is not."""
     own = 1.0 if scene.thickness is None or callable(scene.thickness) else scene.thickness
     each = [own if i.thickness is None else i.thickness for i in scene.inclusions]
     return np.array([own, *each], dtype=np.float64)
 
 
-def at(scene: Description, places: Array) -> Array:
+def at(scene: Composite, places: Array) -> Array:
     """Thickness at places of the body, (n, 2) in the user's coordinates; shape (n,)."""
     if callable(scene.thickness):
         found = evaluate(scene.thickness, places, 1, "the thickness")[:, 0]
@@ -88,7 +106,7 @@ def at(scene: Description, places: Array) -> Array:
     return found
 
 
-def of_particles(scene: Description, lattice: Lattice) -> Array:
+def of_particles(scene: Composite, lattice: Lattice) -> Array:
     """Thickness of every particle's cell, shape (N,), remembered."""
     key = "thickness", id(scene.thickness)
     if key not in lattice.known:
@@ -97,7 +115,7 @@ def of_particles(scene: Description, lattice: Lattice) -> Array:
     return found
 
 
-def loaded(scene: Description, rule: Quadrature) -> Quadrature:
+def loaded(scene: Composite, rule: Quadrature) -> Quadrature:
     """What acts on edges, times their thickness."""
     if not varies(scene):
         return rule
@@ -105,7 +123,7 @@ def loaded(scene: Description, rule: Quadrature) -> Quadrature:
     return rule.carrying(rule.density * thick[:, None])
 
 
-def factors(scene: Description, lattice: Lattice, bonds: Bonds) -> Factors | None:
+def factors(scene: Composite, lattice: Lattice, bonds: Bonds) -> Factors | None:
     """Thickness of every bond where it is a function, see above."""
     if not callable(scene.thickness):
         return None
@@ -178,7 +196,7 @@ def _shares(dx: int, dy: int) -> tuple[tuple[tuple[int, int], ...], NDArray[np.f
     return cells, np.array([b - a for a, b in ends])
 
 
-def scaled(loads: Array, scene: Description, lattice: Lattice, particles: Indices) -> Array:
+def scaled(loads: Array, scene: Composite, lattice: Lattice, particles: Indices) -> Array:
     """Loads of some particles, (n, components), times their thickness."""
     if not varies(scene):
         return loads
