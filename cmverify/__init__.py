@@ -37,6 +37,7 @@ __all__ = [
     "Family",
     "Fourfold",
     "InadmissibleMaterialError",
+    "Inclusion",
     "Influence",
     "Load",
     "MechanismError",

@@ -30,7 +30,7 @@ from .material import (
     TwoHarmonic,
     UniformShear,
 )
-from .problem import Discretisation, Load, Support
+from .problem import Discretisation, Inclusion, Load, Support
 from .scene import Scene
 from .solution import Solution, Statistics
 from .strained import strained
@@ -48,6 +48,7 @@ __all__ = [
     "Family",
     "Fourfold",
     "InadmissibleMaterialError",
+    "Inclusion",
     "Influence",
     "Load",
     "MechanismError",

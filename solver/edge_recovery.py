@@ -97,6 +97,11 @@ def edge_gradient(solution: State, places: ArrayLike, window: float | None = Non
     wanted = np.asarray(places, dtype=np.float64)
     if wanted.ndim != 2 or wanted.shape[1] != 2 or not np.isfinite(wanted).all():
         raise SceneError(f"places are finite points (k, 2), not of the shape {wanted.shape}")
+    if solution.discretisation.bonds.phases is not None:
+        raise SceneError(
+            "gradients on the edge are not known in a body with inclusions: the cubic that is "
+            "fitted would not know their interfaces"
+        )
     body = _View(solution)
     h = solution.spacing
     targets, inner = body.moved_in(wanted - body.shift)

@@ -96,6 +96,7 @@ class _Ends:
     length: Array
     difference: Array
     strains: Array
+    phase: NDArray[np.int64] | None
 
     def add(self, values: Array, result: Array) -> None:
         """Add values (..., bonds) to their particles' in `result`, shape (..., N)."""
@@ -122,7 +123,22 @@ def _ends(solution: State) -> _Ends | None:
         strains = strains - body.eigenstrain.of_ended(ended)
     weight = family.weight[ended.offset] * family.cell_area
     strength = np.ones(len(ended)) if ended.factor is None else ended.factor
-    return _Ends(ended.particle, ended.offset, weight, strength, ended.length, difference, strains)
+    return _Ends(
+        ended.particle,
+        ended.offset,
+        weight,
+        strength,
+        ended.length,
+        difference,
+        strains,
+        ended.phase,
+    )
+
+
+def _per_volume(solution: State, result: Array) -> Array:
+    """`result` (..., N) over the thickness: what acts in the solid, not in the plane."""
+    thick = solution.discretisation.thickness
+    return result if thick is None else result / thick
 
 
 def _aside(solution: State, result: Array) -> Array:
@@ -141,14 +157,14 @@ def _need(solution: State, physics: Physics, what: str) -> None:
 
 def _force(pair: _Pair, moduli: Moduli) -> Array:
     """Pairwise force density f_n n + f_t t with its strength (Eq. 21), or k g n, shape (2, N)."""
-    stiffness = moduli.stiffness[:, pair.index]
-    return pair.strength * np.einsum("a,ai,an->in", stiffness, pair.directions, pair.strains)
+    stress = moduli.of_offset(pair.index) * pair.strains
+    return pair.strength * np.einsum("ai,an->in", pair.directions, stress)
 
 
 def _ended_force(ends: _Ends, moduli: Moduli, family: Family) -> Array:
     """The same of the bonds that end at the surface, shape (2, bonds)."""
     along = directions(moduli.strains, family.normal[ends.offset].T)
-    stiffness = ends.strength * moduli.stiffness[:, ends.offset]
+    stiffness = ends.strength * moduli.of_bonds(ends.offset, ends.phase)
     return np.einsum("ak,aik,ak->ik", stiffness, along, ends.strains)
 
 
@@ -206,7 +222,7 @@ def stress(solution: State, rule: Literal["plane", "family"] | None = None) -> A
                     result[:, axis] += share * force[:, rows + start[1], columns + start[0]]
     else:
         raise ValueError(f"unknown stress rule {rule!r}; known: plane, family")
-    return _aside(solution, np.moveaxis(result, 2, 0))
+    return _aside(solution, np.moveaxis(_per_volume(solution, result), 2, 0))
 
 
 def _crossings(offset: NDArray[np.int64], axis: int) -> Iterator[tuple[tuple[int, int], float]]:
@@ -288,7 +304,7 @@ def _flow(solution: State, rule: str) -> Array:
     if (ends := _ends(solution)) is not None:
         share = _share(rule, ends.strains[0])
         ends.add(-share * ends.weight * _ended_force(ends, body.moduli, body.family), result)
-    return _aside(solution, result.T)
+    return _aside(solution, _per_volume(solution, result).T)
 
 
 def _share(rule: str, gradient: Array) -> Array:
@@ -306,13 +322,14 @@ def strain_energy_density(solution: State) -> Array:
     moduli, length = body.moduli, body.moduli.pair_length(body.family)
     result = np.zeros(body.lattice.count)
     for pair in _pairs(solution):
-        density = length[pair.index] * (moduli.stiffness[:, pair.index] @ pair.strains**2)
+        energy = moduli.of_offset(pair.index) * pair.strains**2
+        density = length[pair.index] * energy.sum(axis=0)
         result += 0.25 * pair.weight * pair.strength * density
     if (ends := _ends(solution)) is not None:
         o = ends.offset
-        density = length[o] * (moduli.stiffness[:, o] * ends.strains**2).sum(axis=0)
+        density = length[o] * (moduli.of_bonds(o, ends.phase) * ends.strains**2).sum(axis=0)
         ends.add(0.25 * ends.weight * ends.strength * density, result)
-    return _aside(solution, result)
+    return _aside(solution, _per_volume(solution, result))
 
 
 def damage(solution: State) -> Array:
@@ -395,7 +412,7 @@ def couple_stress(solution: State) -> Array:
         o = ends.offset
         share = 0.5 * ends.weight * ends.strength * family.length[o] * bending[o]
         ends.add(family.normal[o].T * (share * ends.strains[place]), result)
-    return _aside(solution, result.T)
+    return _aside(solution, _per_volume(solution, result).T)
 
 
 def _stresses(solution: State) -> dict[str, Array]:

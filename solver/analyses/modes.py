@@ -180,7 +180,7 @@ def solve(
     density = _checked(scene, count, tolerance)
     discretisation = Discretisation.of(scene, free=True)
     operator, kind = discretisation.operator, discretisation.stability.kind
-    shares, physics = discretisation.volumes, scene.physics
+    shares, physics = discretisation.storage("density"), scene.physics
     mass = inertia(shares, operator.active, physics, operator.components)
     if operator.identity_rows is not None:
         mass[operator.identity_rows] = 0.0

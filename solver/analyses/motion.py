@@ -92,7 +92,7 @@ class Motion:
                 "negative (C66 < C12): condense them"
             )
         self.rows = 3 if inert else 2
-        shares = body.volumes[operator.active]
+        shares = body.storage("density")[operator.active]
         mass = np.tile(settings.density * shares, (self.rows, 1))
         mass[2:] *= ROTATIONAL_INERTIA
         self.fixed = np.zeros((operator.components, len(operator.active)), dtype=bool)

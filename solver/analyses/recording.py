@@ -174,6 +174,11 @@ def fingerprint(body: Discretisation, **parts: Any) -> str:
         "nodal": body.nodal_load,
         "material": (scene.density, scene.heat_capacity, scene.surface),
     }
+    if body.bonds.phases is not None:
+        known["phases"] = body.bonds.phases.of
+        known["storage"] = [
+            body.storage(n) for n in ("density", "heat_capacity") if getattr(scene, n)
+        ]
     if ended is not None:
         known["ended"] = np.concatenate([ended.position, ended.length])
     return state_file.fingerprint(**known, **parts)

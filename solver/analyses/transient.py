@@ -246,7 +246,7 @@ class _March:
         self.forcing.check(np.array([start, *times]))
         lattice, active = body.lattice, body.operator.active
         given = evaluate(initial, lattice.places, 1, "the initial temperature")[:, 0]
-        self.capacity = scene.heat_capacity * body.volumes[active]
+        self.capacity = scene.heat_capacity * body.storage("heat_capacity")[active]
         labels = np.unique(parts(body.bonds)[1][active], return_inverse=True)[1]
         self.solver = Shifted(body.operator, body.stability.kind, self.capacity[None], labels)
         ones = np.ones(len(active))

@@ -10,7 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import copy
+from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,12 +21,15 @@ from scipy.spatial import KDTree
 
 from ..arrays import Array, Indices, Mask
 from ..errors import NoOutlineError, SceneError
-from ..geometry import Body, Crack, CrackSet, Frame, Lattice, Outline
+from ..geometry import Body, Crack, CrackSet, Frame, Lattice, Outline, Phases
+from ..geometry.outline import INNER
 from ..material import Family
-from .ended import EndedBonds
+from .ended import Chords, EndedBonds
 from .factors import Factors
 from .volume_method import Surface, full_volume, volume_factor
 
+# Cells along an interface in which what is wrong at its end in a support has faded to rounding.
+_FADED = 24
 # Share of a length within which two are equal.
 _TIE = 1e-9
 
@@ -47,6 +52,8 @@ class Bonds:
         Whether the two faces of a crack share the node of each tip; they must not once it grows.
     outline : Outline, optional
         The body's, with these cracks and tips, where it has been drawn already.
+    phases : Phases, optional
+        Of a body of several: bonds end at their interfaces, whatever the treatment of surfaces.
 
     Raises
     ------
@@ -64,9 +71,10 @@ class Bonds:
         broken: Mask | None = None,
         sharp_tips: bool = True,
         outline: Outline | None = None,
+        phases: Phases | None = None,
     ) -> None:
         self.lattice, self.family, self.treatment = lattice, family, treatment
-        self._drawn = outline
+        self._drawn, self.phases = outline, phases
         rows, columns = lattice.rows_columns
         free = np.ones(lattice.count, bool) if prescribed is None else ~prescribed
         longest = float(np.hypot(*family.offsets.T).max()) * (1 + _TIE)
@@ -92,8 +100,8 @@ class Bonds:
         special[cut_at] = True
         special[self.outside_at] = True
         special[broken_at] = True
+        volume = np.full(lattice.count, full_volume(family))
         if treatment == "volume":
-            volume = np.full(lattice.count, full_volume(family))
             physical = self.short[free[self.short]]
             missing = (family.fraction[:, None] * self._open(physical, free)).sum(axis=0)
             volume[physical] -= missing
@@ -121,7 +129,11 @@ class Bonds:
         self.strengths: Array = factors
         #: Bonds that end at the surface, if the treatment has any.
         self.ended: EndedBonds | None = None
-        if treatment == "extrapolated":
+        if phases is not None:
+            self.ended = self._end_phases(phases, cracks, (cut_at, cut), free, sharp_tips)
+            if self.ended is not None and treatment == "volume":
+                self.ended = self._stiffened(self.ended, volume)
+        elif treatment == "extrapolated":
             self.ended = self._end(cut_at, cut, free, broken_at, sharp_tips)
 
     def breaking(self, offsets: Indices, origins: Indices) -> Bonds:
@@ -251,7 +263,82 @@ class Bonds:
         """Particles with bonds that leave the body on their way, and which these are."""
         if self.body is None:
             return np.zeros(0, dtype=np.int64), np.zeros((self.family.size, 0), dtype=bool)
-        return self.body.leaving(self.lattice, self.family.offsets)
+        found = self.body.leaving(self.lattice, self.family.offsets)
+        return found if self.phases is None else self._outside_phases(self.phases, found)
+
+    def _outside_phases(
+        self, phases: Phases, leaving: tuple[Indices, Mask]
+    ) -> tuple[Indices, Mask]:
+        """The same of a body of several phases: bonds stay in their own."""
+        lattice, offsets = self.lattice, self.family.offsets
+        gone = np.zeros((self.family.size, lattice.count), dtype=bool)
+        for k, (part, body) in enumerate(zip(phases.lattices, phases.bodies, strict=True)):
+            at, left = body.leaving(part, offsets)
+            gone[:, np.nonzero(phases.of == k)[0][at]] = left
+        grid = np.full(lattice.shape, -1, dtype=np.int64)
+        grid[lattice.mask] = phases.of
+        rows, columns = lattice.rows_columns
+        for o, (dx, dy) in enumerate(offsets):
+            there = grid[rows + dy, columns + dx]
+            gone[o] |= (there >= 0) & (there != phases.of)
+        gone[:, leaving[0]] |= leaving[1]
+        at = np.nonzero(gone.any(axis=0))[0]
+        return at, gone[:, at]
+
+    def _end_phases(
+        self,
+        phases: Phases,
+        cracks: Sequence[Crack],
+        cut: tuple[Indices, Mask],
+        free: Mask,
+        sharp_tips: bool,
+    ) -> EndedBonds | None:
+        """As `_end`, of a body of several phases."""
+        lattice, family, everything = self.lattice, self.family, self.treatment == "extrapolated"
+        lost = np.zeros((family.size, lattice.count), dtype=bool)
+        lost[:, self.outside_at] = self.outside
+        if everything:
+            lost[:, self.short] |= ~self.exist(self.short)
+            lost[:, cut[0]] |= cut[1]
+        elif self.body is not None:
+            # What leaves the body, or meets a crack, is missing or cut as in a body of one phase.
+            at, left = self.body.leaving(lattice, family.offsets)
+            lost[:, at] &= ~left
+            lost[:, cut[0]] &= ~cut[1]
+        outline = self._drawn or phases.outline(cracks, sharp_tips)
+        found, chords = [], []
+        for k, piece in enumerate(outline.pieces):
+            mine = np.nonzero((phases.of == k) & lost.any(axis=0))[0]
+            part = EndedBonds.of(lattice, family, piece, mine, lost[:, mine])
+            found.append(replace(part, outline=outline, edge=part.edge + outline.starts[k]))
+            chords.append(Chords.of(phases.lattices[k], family, piece))
+        corners = Chords.joined(chords, outline.starts)
+        names = ("particle", "offset", "edge", "position", "length")
+        all_of: dict[str, Any] = {
+            name: np.concatenate([getattr(part, name) for part in found]) for name in names
+        }
+        ended = EndedBonds(outline, **all_of, surface=everything)
+        if not everything:
+            ended = ended.kept(outline.face[ended.edge] == INNER)
+            if corners is not None:
+                corners = corners.kept((outline.face[corners.edge] == INNER).all(axis=1))
+        felt = free[ended.particle]
+        if not felt.any():
+            return None
+        # Prescribed particles hold the nodes that free ones feel. Where the chain of nodes ends
+        # within a support its last one is wrong, and each before it by a quarter of that.
+        points = lattice.points[ended.particle]
+        distance, _ = KDTree(points[felt]).query(points)
+        far = (2 * family.reach + _FADED) * lattice.spacing
+        return ended.kept(distance <= far).between(corners)
+
+    def _stiffened(self, ended: EndedBonds, volume: Array) -> EndedBonds:
+        """Bonds that end at an interface, stiffened as they would be if they went on."""
+        rows, columns = (axis[ended.particle] for axis in self.lattice.rows_columns)
+        dx, dy = self.family.offsets[ended.offset].T
+        there = self.lattice.number()[rows + dy, columns + dx]
+        factor = volume_factor(self.family, volume[ended.particle], volume[there])
+        return replace(ended, factor=factor)
 
     def _both_ends(self, broken: Mask | None) -> tuple[Indices, Mask]:
         """Particles with broken bonds and which, from the half offsets of one end."""

@@ -38,6 +38,7 @@ Where cracks branch, cross or bend every sector of the body between them has a n
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -81,6 +82,26 @@ class Chords:
     length: Array
     arm: Array
     factor: Array | None = None
+
+    @classmethod
+    def joined(cls, found: Sequence[Chords | None], starts: Sequence[int]) -> Chords | None:
+        """Those of several outlines in one, in which their edges have these first numbers."""
+        some = [(c, n) for c, n in zip(found, starts, strict=True) if c is not None]
+        if not some:
+            return None
+        names = ("offset", "edge", "position", "length", "arm")
+        both: dict[str, Any] = {
+            name: np.concatenate([getattr(c, name) + (n if name == "edge" else 0) for c, n in some])
+            for name in names
+        }
+        return cls(**both)
+
+    def kept(self, kept: Mask) -> Chords:
+        """Some of them."""
+        names = ("offset", "edge", "position", "length", "arm")
+        factor = None if self.factor is None else self.factor[kept]
+        fewer: dict[str, Any] = {name: getattr(self, name)[kept] for name in names}
+        return Chords(**fewer, factor=factor)
 
     @classmethod
     def of(cls, lattice: Lattice, family: Family, outline: Outline) -> Chords | None:
@@ -132,11 +153,7 @@ class Chords:
 
     def touching(self, outline: Outline, touched: Mask) -> Chords:
         """Those of which all nodes are among the `touched`."""
-        kept = touched[outline.edges[self.edge]].all(axis=(1, 2))
-        names = ("offset", "edge", "position", "length", "arm")
-        factor = None if self.factor is None else self.factor[kept]
-        fewer: dict[str, Any] = {name: getattr(self, name)[kept] for name in names}
-        return Chords(**fewer, factor=factor)
+        return self.kept(np.asarray(touched[outline.edges[self.edge]].all(axis=(1, 2))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,9 +177,11 @@ class EndedBonds:
     given : ndarray, shape (components, nodes of the outline), optional
         Their values, in the units of the unknowns.
     factor : ndarray, shape (k,), optional
-        On the modulus of each.
+        On the modulus of each (`factors`), and where a treatment of surfaces stiffens bonds.
     edge_factor : ndarray, shape (edges of the outline, family size / 2), optional
         What the membrane along the edge takes for bonds of each half offset (`factors`).
+    surface : bool
+        Whether they end at the body's surface, and not at interfaces only.
     """
 
     outline: Outline
@@ -176,6 +195,7 @@ class EndedBonds:
     given: Array | None = None
     factor: Array | None = None
     edge_factor: Array | None = None
+    surface: bool = True
 
     @classmethod
     def of(
@@ -192,40 +212,48 @@ class EndedBonds:
 
     def joined(self, others: EndedBonds) -> EndedBonds:
         """These bonds, and those of `others` that end beside a node of these."""
-        touched = np.zeros(len(self.outline.nodes), dtype=bool)
-        touched[self.outline.edges[self.edge]] = True
-        kept = touched[self.outline.edges[others.edge]].any(axis=1)
-        names = ("particle", "offset", "edge", "position", "length")
+        kept = self.touched[self.outline.edges[others.edge]].any(axis=1)
+        names = _each(self)
         both: dict[str, Any] = {
             name: np.concatenate([getattr(self, name), getattr(others, name)[kept]])
             for name in names
         }
         return replace(self, **both)
 
+    @property
+    def touched(self) -> Mask:
+        """Nodes of the outline that bonds end beside, shape (nodes,)."""
+        return self.outline.touched(self.edge)
+
+    @property
+    def phase(self) -> Indices | None:
+        """Phase of the body that each lies in, None in a body of one."""
+        return None if self.outline.phase is None else self.outline.phase[self.edge]
+
+    def kept(self, kept: Mask) -> EndedBonds:
+        """Some of these bonds."""
+        fewer: dict[str, Any] = {name: getattr(self, name)[kept] for name in _each(self)}
+        return replace(self, **fewer)
+
     def without(self, particles: Indices) -> EndedBonds | None:
         """These bonds less those of some particles, None if that leaves none."""
         kept = ~np.isin(self.particle, particles)
         if not kept.any():
             return None
-        names = ["particle", "offset", "edge", "position", "length"]
-        if self.factor is not None:
-            names.append("factor")
-        fewer: dict[str, Any] = {name: getattr(self, name)[kept] for name in names}
-        left = replace(self, **fewer)
+        left = self.kept(kept)
         if self.chords is not None:
-            touched = np.zeros(len(self.outline.nodes), dtype=bool)
-            touched[self.outline.edges[left.edge]] = True
-            left = replace(left, chords=self.chords.touching(self.outline, touched))
+            left = replace(left, chords=self.chords.touching(self.outline, left.touched))
         return left
 
     def with_chords(self, lattice: Lattice, family: Family) -> EndedBonds:
         """The same with what the body's corners cut out of other bonds."""
-        chords = Chords.of(lattice, family, self.outline)
+        return self.between(Chords.of(lattice, family, self.outline))
+
+    def between(self, chords: Chords | None) -> EndedBonds:
+        """The same with those of some chords that touch nodes of these."""
         if chords is None:
             return self
-        touched = np.zeros(len(self.outline.nodes), dtype=bool)
-        touched[self.outline.edges[self.edge]] = True
-        return replace(self, chords=chords.touching(self.outline, touched))
+        return replace(self, chords=chords.touching(self.outline, self.touched))
 
     def holding(self, held: Mask, given: Array) -> EndedBonds:
         """The same bonds with some components of the outline's nodes prescribed."""
@@ -246,3 +274,9 @@ class EndedBonds:
         """Memory of the arrays, bytes."""
         arrays = (self.particle, self.offset, self.edge, self.position, self.length)
         return sum(a.nbytes for a in arrays)
+
+
+def _each(bonds: EndedBonds) -> tuple[str, ...]:
+    """Names of what there is one of for every bond."""
+    names = ("particle", "offset", "edge", "position", "length")
+    return names if bonds.factor is None else (*names, "factor")

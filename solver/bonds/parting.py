@@ -10,7 +10,6 @@ joins what the crack separates: as for cracks that were always there.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import shapely
@@ -135,15 +134,12 @@ def part(
     kept[near] = ~crossed(
         lattice.points[ended.particle[near]], _on(ended.outline, ended.edge, ended.position)[near]
     )
-    left = _kept(ended, kept)
+    left = ended.kept(kept)
     chords = ended.chords
     if chords is not None and len(chords.offset):
         a, b = (_on(ended.outline, chords.edge[:, k], chords.position[:, k]) for k in (0, 1))
         whole = ~crossed(a, b)
-        names = ("offset", "edge", "position", "length", "arm")
-        left = replace(
-            left, chords=replace(chords, **{name: getattr(chords, name)[whole] for name in names})
-        )
+        left = replace(left, chords=chords.kept(whole))
         kept = np.append(kept, whole)
     split = _splits(ended.outline, pieces, tree, tips, h)
     origin = np.arange(len(ended.outline.nodes))
@@ -213,14 +209,20 @@ def _split(
         # The edge that starts there gets the copy.
         edges[after[0], 0] = count
         nodes = np.vstack([outline.nodes, outline.nodes[node]])
-        ended = replace(ended, outline=Outline(nodes, edges, face))
+        joints = np.append(outline.joints, outline.joints[node])
+        ended = replace(ended, outline=Outline(nodes, edges, face, outline.owned, joints))
         pair = int(before[0]), int(after[0])
         return _sided(ended, pair, across, lattice), np.append(origin, -1)
     place = (1 - position) * outline.nodes[a] + position * outline.nodes[b]
     nodes = np.vstack([outline.nodes, place, place])
     edges[edge] = a, count
     edges = np.vstack([edges, [count + 1, b]])
-    more = Outline(nodes, edges, np.append(face, face[edge]))
+    owned = None if outline.owned is None else np.append(outline.owned, outline.owned[edge])
+    joints = np.append(outline.joints, [False, False])
+    more = Outline(nodes, edges, np.append(face, face[edge]), owned, joints)
+    if ended.edge_factor is not None:
+        both = np.vstack([ended.edge_factor, ended.edge_factor[edge]])
+        ended = replace(ended, edge_factor=both)
 
     def moved(which: Indices, where: Array) -> tuple[Indices, Array]:
         mine, beyond = which == edge, (which == edge) & (where > position)
@@ -272,10 +274,4 @@ def _sided(ended: EndedBonds, pair: tuple[int, int], across: Array, lattice: Lat
     edge[moved] = wanted[wrong & at]
     position[moved] = np.where(edge[moved] == before, 1.0, 0.0)
     ended = replace(ended, edge=edge, position=position)
-    return _kept(ended, ~np.isin(np.arange(len(ended)), gone)) if len(gone) else ended
-
-
-def _kept(ended: EndedBonds, kept: Mask) -> EndedBonds:
-    names = ("particle", "offset", "edge", "position", "length")
-    fewer: dict[str, Any] = {name: getattr(ended, name)[kept] for name in names}
-    return replace(ended, **fewer)
+    return ended.kept(~np.isin(np.arange(len(ended)), gone)) if len(gone) else ended

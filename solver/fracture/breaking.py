@@ -21,7 +21,7 @@ from ..geometry import Where, select
 from ..material import ElasticModuli, Family, PolarModuli
 from ..material.strains import elongations
 from ..operators import segments
-from ..problem import Discretisation
+from ..problem import Discretisation, thickness
 from . import bond_kernels
 from .broken import BrokenBonds
 
@@ -109,6 +109,11 @@ class Breakable:
         criterion: Criterion = "total",
     ) -> None:
         moduli, family = discretisation.moduli, discretisation.family
+        if discretisation.scene.inclusions:
+            raise SceneError(
+                "cracks do not grow in a body with inclusions: bonds that end at an interface "
+                "have no strength"
+            )
         if not moduli.physics.breakable or not isinstance(moduli, ElasticModuli):
             raise SceneError(
                 f"bonds break in elastic bodies only: {moduli.physics.name} has no bond energy"
@@ -120,6 +125,8 @@ class Breakable:
         lattice = discretisation.lattice
         self.lattice, self.family, self.tension_only = lattice, family, bool(tension_only)
         self.critical = critical_energies(toughness, family)
+        #: Thickness of every bond, (half, N), or of all, m: breaking costs w_c per thickness.
+        self.thickness: Array = _thickness(discretisation, half)
         #: Energy of a pair per unit of its energy density, m⁴ per unit thickness.
         self.pair = family.weight[:half] * family.cell_area**2
         axial = 0.5 * moduli.normal[:half] / family.length[:half]
@@ -213,6 +220,8 @@ class Breakable:
             self._out,
         )
         self._out[self.kept] = 0.0
+        if self.thickness.size > 1 or self.thickness.ravel()[0] != 1.0:
+            self._out /= self.thickness
         return self._out
 
     def stored(self, unknowns: Array, others: Array | None = None) -> float:
@@ -240,7 +249,8 @@ class Breakable:
 
     def cost_of(self, bonds: Indices) -> Array:
         """Energy that breaking these bonds takes, w_c α Λ Δv_p Δv_q."""
-        return (self.critical * self.pair)[bonds // self.lattice.count]
+        thick = np.broadcast_to(self.thickness, self.whole.shape).ravel()[bonds]
+        return thick * (self.critical * self.pair)[bonds // self.lattice.count]
 
     # ---- geometry -----------------------------------------------------------------------
 
@@ -313,6 +323,13 @@ def _line(values: Array, threshold: float) -> float:
     marks = np.concatenate([[low], near, [high]])
     widest = int(np.argmax(np.diff(marks)))
     return float(0.5 * (marks[widest] + marks[widest + 1]))
+
+
+def _thickness(discretisation: Discretisation, half: int) -> Array:
+    """Thickness of every bond, (half, N), or one for all, (1, 1)."""
+    scene = discretisation.scene
+    varying = thickness.factors(scene, discretisation.lattice, discretisation.bonds)
+    return thickness.of_phases(scene)[None, :1] if varying is None else varying.whole[:half]
 
 
 def _refuse_negative(moduli: ElasticModuli, criterion: Criterion) -> None:

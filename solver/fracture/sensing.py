@@ -67,6 +67,11 @@ class Sensor:
             raise SceneError(
                 f"a sensor needs a conductor, not {self.scene.physics.adjective} scene"
             )
+        if self.scene.inclusions:
+            raise SceneError(
+                "a sensor's scene has no inclusions: what the mechanics breaks would leave bonds "
+                "that end at their interfaces"
+            )
         if self.scene.broken is not None:
             raise SceneError("bonds of a sensor's scene break with the mechanics: leave them whole")
 

@@ -6,6 +6,7 @@ from .exact import Frame
 from .inside import Body
 from .lattice import Lattice, select
 from .outline import Outline
+from .phases import Phases
 from .regions import Crack, Point, Region, Where, disc, polygon, rectangle
 from .spread import on_edges, on_particles
 from .strips import volumes
@@ -17,6 +18,7 @@ __all__ = [
     "Frame",
     "Lattice",
     "Outline",
+    "Phases",
     "Point",
     "Quadrature",
     "Region",

@@ -32,6 +32,12 @@ from .rings import EDGE_STEP, rings
 # faces part linearly, sets how far the lattice sees the crack reach: of 1, 2, 3 cells one has the
 # smallest error in mode I and less than separate tips in mode II.
 _LEVEL_STEP, _FACE_STEP = 1.0, 1.0
+#: Kind of an edge between two phases of a body (`solver.geometry.phases`).
+INNER = 3
+# Distance of nodes, in cells, on edges of phases that run along rows but not between two.
+_BESIDE = 4.0
+# Least length of an edge between a corner and a border of cells, in cells.
+_SLICE = 0.3
 # Shares of a bond that are the same.
 _SAME = 1e-7
 # Share of an edge within which a point on it counts as at its node.
@@ -53,12 +59,20 @@ class Outline:
         First and last node; the body lies to the left.
     face : ndarray of int, shape (e,)
         0 for an edge of the region, 1 and 2 for the upper and the lower face of a crack (left and
-        right, where it is upright).
+        right, where it is upright), `INNER` for an interface.
     owned : ndarray of bool, shape (e,), optional
         Whether particles on an edge are the body's (`regions`): not on the rim of a hole. All are
         by default.
     joints : ndarray of bool, shape (n,)
         Nodes at which a crack ends, bends, branches or meets an edge.
+    phase : ndarray of int, shape (e,), optional
+        Phase of the body to the left of each edge, in a body of several.
+    shared : ndarray of int, shape (n,), optional
+        For each node the one that stands for all at its place, on interfaces; itself elsewhere.
+    pieces : tuple of Outline
+        The outlines of the phases.
+    starts : tuple of int
+        The number that the first edge of each has here.
     """
 
     nodes: Array
@@ -66,6 +80,10 @@ class Outline:
     face: Indices
     owned: Mask | None = None
     joints: Mask = field(default_factory=lambda: np.zeros(0, dtype=bool))
+    phase: Indices | None = None
+    shared: Indices | None = None
+    pieces: tuple[Outline, ...] = ()
+    starts: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         if not len(self.joints):
@@ -93,7 +111,12 @@ class Outline:
         """
         step = EDGE_STEP * spacing
         chains = [
-            _walk(np.append(ring, ring[:1], axis=0), step, level=_LEVEL_STEP * spacing)
+            _walk(
+                np.append(ring, ring[:1], axis=0),
+                step,
+                level=_LEVEL_STEP * spacing,
+                everywhere=region.settled,
+            )
             for part in rings(region, spacing)
             for ring in part
         ]
@@ -108,6 +131,21 @@ class Outline:
         ends = found.nodes[found.edges]
         owned = region.contains(*ends.mean(axis=1).T)
         return cls(found.nodes, found.edges, found.face, owned, found.joints)
+
+    @property
+    def edged(self) -> Mask:
+        """Whether each edge bounds a phase of the body, on its surface or within: no crack."""
+        return np.asarray((self.face == 0) | (self.face == INNER))
+
+    def standing_for(self, nodes: Indices) -> Indices:
+        """The nodes that stand for these."""
+        return nodes if self.shared is None else self.shared[nodes]
+
+    def touched(self, edges: Indices) -> Mask:
+        """Which nodes are ends of some edges, or share their place, shape (n,)."""
+        at = np.zeros(len(self.nodes), dtype=bool)
+        at[self.standing_for(self.edges[edges])] = True
+        return at if self.shared is None else at[self.shared]
 
     @property
     def length(self) -> Array:
@@ -303,7 +341,7 @@ class Outline:
     def beside(self) -> tuple[Indices, Indices]:
         """The region's edge before and after every node, −1 where there is none, (nodes,) each."""
         before, after = np.full((2, len(self.nodes)), -1)
-        here = np.nonzero(self.face == 0)[0]
+        here = np.nonzero(self.edged)[0]
         before[self.edges[here, 1]], after[self.edges[here, 0]] = here, here
         return before, after
 
@@ -366,16 +404,25 @@ class Outline:
         return self._upper(height, along)
 
 
-def _walk(points: Array, step: float, level: float | None = None, last: bool = False) -> Array:
+def _walk(
+    points: Array,
+    step: float,
+    level: float | None = None,
+    last: bool = False,
+    everywhere: bool = False,
+) -> Array:
     """The polyline with vertices at most `step` apart; its end too if `last`.
 
     Pieces that run between two rows (or columns) of cells of size `level` have vertices that far
-    apart, if it is given.
+    apart, if it is given; `everywhere` those that run along rows anywhere, at the borders of cells.
     """
     pieces = []
     for first, second in pairwise(points):
         along = np.abs(second - first)
         most = step
+        if everywhere and level is not None and along.min() <= 1e-9 * along.max():
+            pieces.append(_bordered(first, second, level))
+            continue
         if level is not None and along.min() <= 1e-9 * along.max():
             row = first[int(np.argmin(along))] / level
             most = level if abs(row - np.rint(row)) < 1e-6 else step
@@ -384,3 +431,17 @@ def _walk(points: Array, step: float, level: float | None = None, last: bool = F
     if last:
         pieces.append(points[-1:])
     return np.concatenate(pieces)
+
+
+def _bordered(first: Array, second: Array, level: float) -> Array:
+    """Vertices of a piece along a row where it crosses borders of cells, without its end."""
+    axis = int(np.argmax(np.abs(second - first)))
+    low, high = sorted((first[axis], second[axis]))
+    row = first[1 - axis] / level
+    # Beside a row that the edge cuts the membrane may be negative: longer edges bear that.
+    level = level if abs(row - np.rint(row)) < 1e-6 else _BESIDE * level
+    borders = level * np.arange(np.ceil(low / level), np.floor(high / level) + 1)
+    away = np.minimum(borders - low, high - borders)
+    borders = borders[away > _SLICE * level]
+    share = (borders - first[axis]) / (second[axis] - first[axis])
+    return np.asarray(first + np.sort(np.append(0.0, share))[:, None] * (second - first))

@@ -42,6 +42,9 @@ _FINE = 1.0 / 4096.0
 class Region(ABC):
     """A bounded part of the plane."""
 
+    #: Whether the vertices of its outline stay as they are, however close.
+    settled = False
+
     @property
     @abstractmethod
     def bounds(self) -> tuple[float, float, float, float]:

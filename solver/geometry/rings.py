@@ -40,7 +40,7 @@ def rings(region: Region, spacing: float) -> list[list[Array]]:
             continue
         turned = shapely.geometry.polygon.orient(polygon, 1.0)
         fine = [shapely.get_coordinates(r)[:-1] for r in (turned.exterior, *turned.interiors)]
-        coarse = [thinned(ring, CLOSE * step) for ring in fine]
+        coarse = fine if region.settled else [thinned(ring, CLOSE * step) for ring in fine]
         # Two curves nearer to each other than their chords to them keep all their vertices.
         simple = shapely.Polygon(coarse[0], coarse[1:]).is_valid
         outer, *holes = (_begun(ring, step) for ring in (coarse if simple else fine))

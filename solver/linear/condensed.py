@@ -33,8 +33,8 @@ class RotationBlock(LinearOperator):
         self.operator = operator
         self._grid = np.zeros((1, int(np.prod(operator.bonds.lattice.shape))))
         # The kernel subtracts its neighbours, K_θθ adds them: c enters with its own sign.
-        self._blocks = np.ascontiguousarray(operator.half_blocks[:, 5:6])
-        self._bulk = -operator.bulk[5:6]
+        self._blocks = np.ascontiguousarray(operator.half_blocks[..., 5:6])
+        self._bulk = np.ascontiguousarray(-operator.bulk[:, 5:6])
         self._diagonal = np.ascontiguousarray(-operator.diagonal[5:6])
 
     def _matvec(self, theta: Array) -> Array:

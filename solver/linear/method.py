@@ -125,6 +125,6 @@ def attainable(operator: BondOperator, x: Array, rhs: Array) -> float:
     they make (a slender body in bending) these cancel.
     """
     size = float(np.linalg.norm(rhs))
-    largest = 2.0 * float(np.abs(operator.bulk_block).max())
+    largest = 2.0 * float(np.abs(operator.bulk_blocks).max())
     rounding = _ROUNDINGS * np.finfo(np.float64).eps
     return rounding * largest * float(np.linalg.norm(x)) / size if size else 0.0

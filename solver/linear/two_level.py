@@ -53,7 +53,8 @@ class BlockJacobi(LinearOperator):
     def __init__(self, operator: BondOperator) -> None:
         super().__init__(operator.dtype, operator.shape)
         self.operator = operator
-        self._bulk = _inverse(operator, operator.bulk_block[None], None)[:, :, 0]
+        bulk = _inverse(operator, operator.bulk_blocks, None)
+        self._bulk = np.ascontiguousarray(np.moveaxis(bulk, 2, 0))
         self._own = _inverse(operator, operator.own_blocks, operator.own)
 
     def _matvec(self, x: Array) -> Array:

@@ -6,6 +6,7 @@ from .expansion import ExpansionTensor
 from .family import AreaRule, Family
 from .influence import CONSTANT, Influence
 from .laws import AngularLaw, Cosine, Fourfold, TwoHarmonic, UniformShear
+from .mixture import Mixture, together
 from .moduli import (
     ConductiveModuli,
     ElasticModuli,
@@ -48,6 +49,7 @@ __all__ = [
     "Fourfold",
     "Influence",
     "Material",
+    "Mixture",
     "Moduli",
     "Piezoresistance",
     "Plane",
@@ -71,4 +73,5 @@ __all__ = [
     "require_admissible",
     "stress_rotation",
     "stretch_rows",
+    "together",
 ]

@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, Indices
 from .family import Family
 from .physics import Physics
 from .strains import elongations, end_rows, homogeneous_shear, homogeneous_stretch
@@ -72,6 +72,19 @@ class Moduli(ABC):
     @abstractmethod
     def uniaxial(self, along: Array) -> Array:
         """Unit stress (σ11, σ22, σ12) or flux along unit vectors (e, 2), shape (e, 3 or 2)."""
+
+    @property
+    def each(self) -> tuple[Moduli, ...]:
+        """Moduli of every solid that the body consists of; see `solver.material.mixture`."""
+        return (self,)
+
+    def of_offset(self, o: int) -> Array:
+        """k_a of the bonds of one offset, shape (strains, N), or (strains, 1) if all are alike."""
+        return self.stiffness[:, o, None]
+
+    def of_bonds(self, offset: Indices, phase: Indices | None) -> Array:
+        """k_a of bonds with these offsets in these phases, shape (strains, k)."""
+        return self.stiffness[:, offset]
 
     @property
     def turns(self) -> bool:

@@ -21,18 +21,18 @@ def to_csr(operator: BondOperator) -> sparse.csr_array:
     values: list[Array] = []
     ends: list[NDArray[np.int32]] = []
     starts: list[NDArray[np.int32]] = []
-    _, coupling = bond_blocks(bonds.family, operator.moduli)
+    coupling = np.stack([bond_blocks(bonds.family, own)[1] for own in operator.moduli.each])
     for o, (dx, dy) in enumerate(bonds.family.offsets):
         neighbour = number[rows + dy, columns + dx]
         here = np.nonzero(neighbour >= 0)[0]
         factor = bonds.strength(o)[operator.active[here]]
         for a in range(c):
             for b in range(c):
-                values.append(factor * coupling[o, a, b])
+                values.append(factor * coupling[operator.phase[here], o, a, b])
                 starts.append((a * count + here).astype(np.int32))
                 ends.append((b * count + neighbour[here]).astype(np.int32))
     # As the kernels have them: the nodes' part follows as a whole.
-    diagonal = np.tile(operator.bulk_block, (count, 1, 1))
+    diagonal = operator.bulk_blocks[operator.phase]
     diagonal[operator.own] = operator.as_blocks(operator.diagonal)
     for a in range(c):
         for b in range(c):

@@ -51,3 +51,8 @@ def offset_blocks(family: Family, moduli: Moduli, coupling: bool = False) -> Arr
         turning = np.array(moduli.physics.turning[: moduli.components])
         block = np.where(turning[:, None] | turning, between, -between)
     return np.column_stack([block[:, a, b] for a, b in entries(moduli.components)])
+
+
+def each_offset_blocks(family: Family, moduli: Moduli, coupling: bool = False) -> Array:
+    """`offset_blocks` of every phase, shape (phases, family size, 6, 3 or 1)."""
+    return np.stack([offset_blocks(family, own, coupling) for own in moduli.each])

@@ -18,10 +18,10 @@ from scipy.sparse.linalg import LinearOperator
 
 from ..arrays import Array, Mask
 from ..bonds import Bonds
-from ..material import Moduli, PolarModuli
+from ..material import Mixture, Moduli, PolarModuli
 from . import kernels, segments
+from .blocks import each_offset_blocks
 from .blocks import entries as block_entries
-from .blocks import offset_blocks
 from .surface_stiffness import SurfaceStiffness, stiffness_of
 
 # Own stiffness, relative to the bulk's, beyond which a particle is tied to the surface's nodes.
@@ -42,12 +42,16 @@ class BondOperator(LinearOperator):
 
     def __init__(self, bonds: Bonds, moduli: Moduli, prescribed: Mask) -> None:
         self.bonds, self.moduli = bonds, moduli
-        self.blocks: Array = offset_blocks(bonds.family, moduli)
+        self.blocks: Array = each_offset_blocks(bonds.family, moduli)
         self.components = moduli.components
         if prescribed.shape != (self.components, bonds.lattice.count):
             raise ValueError(f"prescribed must have shape {(self.components, bonds.lattice.count)}")
         #: Numbers of the active particles.
         self.active: NDArray[np.int64] = np.nonzero(~prescribed.all(axis=0))[0]
+        #: Phase of each of them.
+        self.phase: NDArray[np.int64] = np.zeros(len(self.active), dtype=np.int64)
+        if isinstance(moduli, Mixture):
+            self.phase = moduli.of[self.active]
         count = len(self.active)
         super().__init__(np.float64, (self.components * count, self.components * count))
         partly = prescribed[:, self.active]
@@ -66,9 +70,11 @@ class BondOperator(LinearOperator):
         self.steps = (dy * row + dx).astype(np.uint64)
         coupling = self.blocks
         if isinstance(moduli, PolarModuli):
-            coupling = offset_blocks(bonds.family, moduli, coupling=True)
-        self.half_blocks = np.ascontiguousarray(coupling[:half])
-        self.bulk = self._diagonal_sums(np.ones((bonds.family.size, 1)))[:, 0]
+            coupling = each_offset_blocks(bonds.family, moduli, coupling=True)
+        self.half_blocks = np.ascontiguousarray(coupling[:, :half])
+        self.bulk = np.stack(
+            [_diagonal_sums(own, np.ones((bonds.family.size, 1)))[:, 0] for own in self.blocks]
+        )
         #: Runs of particles of one kind, as the kernels read them.
         self.segments, self.diagonal = self._layout()
         #: Stiffness of the bonds that end at the surface, if there are any.
@@ -115,24 +121,18 @@ class BondOperator(LinearOperator):
             # Their blocks differ for whoever inverts them.
             kind[self.identity_rows.any(axis=0) & (kind == segments.BULK)] = segments.TRUNCATED
         own = kind != segments.BULK
-        diagonal = np.empty((len(self.bulk), int(own.sum())))
-        truncated = self.active[kind == segments.TRUNCATED]
-        diagonal[:, kind[own] == segments.TRUNCATED] = self._diagonal_sums(
-            bonds.exist(truncated).astype(np.float64)
-        )
+        diagonal = np.empty((self.bulk.shape[1], int(own.sum())))
         special = bonds.column[self.active]
-        diagonal[:, kind[own] == segments.SPECIAL] = self._diagonal_sums(
-            bonds.strengths[:, special[kind == segments.SPECIAL]]
-        )
-        found = segments.of(bonds.lattice, self.active, kind, np.cumsum(own) - 1, special)
+        for phase, blocks in enumerate(self.blocks):
+            short = (kind == segments.TRUNCATED) & (self.phase == phase)
+            diagonal[:, short[own]] = _diagonal_sums(
+                blocks, bonds.exist(self.active[short]).astype(np.float64)
+            )
+            some = (kind == segments.SPECIAL) & (self.phase == phase)
+            diagonal[:, some[own]] = _diagonal_sums(blocks, bonds.strengths[:, special[some]])
+        column = np.cumsum(own) - 1
+        found = segments.of(bonds.lattice, self.active, kind, column, special, self.phase)
         return found, diagonal
-
-    def _diagonal_sums(self, factors: Array) -> Array:
-        """Diagonal blocks for bond factors of shape (family size, n): (entries, n).
-
-        Order 11, 22 … as the kernels read it: 11, 12, 22, 1θ, 2θ, θθ.
-        """
-        return np.einsum("oe,on->en", self.blocks, factors)
 
     # ---- products -----------------------------------------------------------------------
 
@@ -240,14 +240,16 @@ class BondOperator(LinearOperator):
         place = {1: [0], 2: [0, 2], 3: [0, 2, 5]}[self.components]
         bulk = np.ones(len(self.active), dtype=bool)
         bulk[self.own] = False
-        inner = diagonal[:, bulk]
         other = copy(self)
         other.__dict__.pop("block_diagonal", None)
         other.bulk, other.diagonal = self.bulk.copy(), self.diagonal.copy()
-        if inner.size:
+        for phase in range(len(self.bulk)):
+            inner = diagonal[:, bulk & (self.phase == phase)]
+            if not inner.size:
+                continue
             if (inner != inner[:, :1]).any():
                 raise ValueError("the diagonal differs between particles of the bulk")
-            other.bulk[place] += inner[:, 0]
+            other.bulk[phase, place] += inner[:, 0]
         other.diagonal[place] += diagonal[:, self.own]
         return other
 
@@ -291,14 +293,14 @@ class BondOperator(LinearOperator):
     @cached_property
     def block_diagonal(self) -> Array:
         """Diagonal blocks, shape (active, components, components)."""
-        blocks = np.tile(self.bulk_block, (len(self.active), 1, 1))
+        blocks = self.bulk_blocks[self.phase]
         blocks[self.own] = self.own_blocks
         return blocks
 
     @property
-    def bulk_block(self) -> Array:
-        """Diagonal block of a bulk particle, shape (components, components)."""
-        return self.as_blocks(self.bulk[:, None])[0]
+    def bulk_blocks(self) -> Array:
+        """Diagonal block of a bulk particle of each phase, (phases, components, components)."""
+        return self.as_blocks(np.ascontiguousarray(self.bulk.T))
 
     @cached_property
     def own(self) -> NDArray[np.int64]:
@@ -327,7 +329,8 @@ class BondOperator(LinearOperator):
         own = np.full(len(self.active), -1)
         own[self.own] = np.arange(len(self.own))
         at = own[self.at_surface]
-        stiff = np.abs(np.einsum("pii->p", blocks[at])) > STIFF * np.abs(np.trace(self.bulk_block))
+        bulk = np.abs(np.einsum("pii->p", self.bulk_blocks))[self.phase[self.at_surface]]
+        stiff = np.abs(np.einsum("pii->p", blocks[at])) > STIFF * bulk
         blocks[at[stiff]] += self.ended_stiffness.relief(self._on_surface[stiff])
 
     def as_blocks(self, entries: Array) -> Array:
@@ -349,3 +352,11 @@ class BondOperator(LinearOperator):
         arrays = (self.segments, self.steps, self.half_blocks, self.bulk, self.diagonal)
         surface = 0 if self.ended_stiffness is None else self.ended_stiffness.nbytes
         return sum(a.nbytes for a in arrays) + self.bonds.nbytes + surface
+
+
+def _diagonal_sums(blocks: Array, factors: Array) -> Array:
+    """Diagonal blocks for bond factors of shape (family size, n): (entries, n).
+
+    Order 11, 22 … as the kernels read it: 11, 12, 22, 1θ, 2θ, θθ.
+    """
+    return np.einsum("oe,on->en", blocks, factors)

@@ -163,9 +163,8 @@ class Eigenstrain:
         """
         ended, moduli, family = surface.ended, self.moduli, self.bonds.family
         outline, c = ended.outline, moduli.components
-        number = np.full(len(outline.nodes), -1)
-        number[surface.nodes] = np.arange(len(surface.nodes))
-        rule = BondStrains(family, moduli, ended.offset, ended.length, ended.factor)
+        number = surface.number
+        rule = BondStrains.of(ended, family, moduli)
         whole = family.length[ended.offset]
         force = rule.weight * self.of_ended(ended)
         on_particles = np.zeros((c, self.bonds.lattice.count))

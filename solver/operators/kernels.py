@@ -3,7 +3,7 @@
 Arrays and scalars in, arrays out; no logic about scenes. A body is handed over as *segments*,
 runs of neighbouring particles in one grid row that share a kind, as rows of an unsigned array
 
-    first cell | length | first packed row | kind | first column of `diagonal` | … of `factors`
+    first cell | length | first packed row | kind | first column of `diagonal`, of `factors` | phase
 
 Kinds: 0 bulk (constant diagonal block, opposite bonds taken together), 1 truncated (own diagonal
 block, missing neighbours read as zeros), 2 special (own factors too). Each segment is written by
@@ -52,12 +52,12 @@ def elastic_product(grid, segments, steps, blocks, bulk, diagonal, factors, out)
     ----------
     grid : float64 (3, cells)
         u1, u2 and scaled rotation on the padded grid.
-    segments : uint64 (s, 6)
+    segments : uint64 (s, 7)
     steps : uint64 (h,)
         Distance of each half offset in cells of the flattened grid.
-    blocks : float64 (h, 6)
+    blocks : float64 (phases, h, 6)
         A11, A12, A22, t̂1, t̂2, c of each half offset.
-    bulk : float64 (6,)
+    bulk : float64 (phases, 6)
         Diagonal block of a bulk particle: 11, 12, 22, 1θ, 2θ, θθ.
     diagonal : float64 (6, d)
     factors : float64 (2h, f)
@@ -68,13 +68,14 @@ def elastic_product(grid, segments, steps, blocks, bulk, diagonal, factors, out)
     for s in nb.prange(segments.shape[0]):
         cell, size, first = segments[s, 0], segments[s, 1], segments[s, 2]
         kind, column, fcol = segments[s, 3], segments[s, 4], segments[s, 5]
+        phase = segments[s, 6]
         fx, fy, mo = out[0], out[1], out[2]
         if kind == _U(0):
             for j in range(size):
                 x, y, r = ux[cell + j], uy[cell + j], th[cell + j]
-                fx[first + j] = bulk[0] * x + bulk[1] * y
-                fy[first + j] = bulk[1] * x + bulk[2] * y
-                mo[first + j] = bulk[5] * r
+                fx[first + j] = bulk[phase, 0] * x + bulk[phase, 1] * y
+                fy[first + j] = bulk[phase, 1] * x + bulk[phase, 2] * y
+                mo[first + j] = bulk[phase, 5] * r
         else:
             for j in range(size):
                 x, y, r = ux[cell + j], uy[cell + j], th[cell + j]
@@ -84,8 +85,8 @@ def elastic_product(grid, segments, steps, blocks, bulk, diagonal, factors, out)
                 mo[first + j] = diagonal[3, k] * x + diagonal[4, k] * y + diagonal[5, k] * r
         if kind != _U(2):
             for o in range(half):
-                a, b, c = blocks[o, 0], blocks[o, 1], blocks[o, 2]
-                tx, ty, e = blocks[o, 3], blocks[o, 4], blocks[o, 5]
+                a, b, c = blocks[phase, o, 0], blocks[phase, o, 1], blocks[phase, o, 2]
+                tx, ty, e = blocks[phase, o, 3], blocks[phase, o, 4], blocks[phase, o, 5]
                 ahead, behind = cell + steps[o], cell - steps[o]
                 for j in range(size):
                     x1, x2 = ux[ahead + j], ux[behind + j]
@@ -97,8 +98,8 @@ def elastic_product(grid, segments, steps, blocks, bulk, diagonal, factors, out)
                     mo[first + j] += e * (r1 + r2) - tx * (x1 - x2) - ty * (y1 - y2)
         else:
             for o in range(half):
-                a, b, c = blocks[o, 0], blocks[o, 1], blocks[o, 2]
-                tx, ty, e = blocks[o, 3], blocks[o, 4], blocks[o, 5]
+                a, b, c = blocks[phase, o, 0], blocks[phase, o, 1], blocks[phase, o, 2]
+                tx, ty, e = blocks[phase, o, 3], blocks[phase, o, 4], blocks[phase, o, 5]
                 ahead, behind = cell + steps[o], cell - steps[o]
                 f_ahead, f_behind = factors[o], factors[o + half]
                 for j in range(size):
@@ -116,26 +117,27 @@ def elastic_product(grid, segments, steps, blocks, bulk, diagonal, factors, out)
 def central_product(grid, segments, steps, blocks, bulk, diagonal, factors, out):
     """Operator rows of an elastic body in which no bond resists shear: two unknowns.
 
-    As `elastic_product` with `grid` (2, cells), `blocks` (h, 3), `bulk` (3,), `diagonal` (3, d)
-    and `out` (2, n).
+    As `elastic_product` with `grid` (2, cells), `blocks` (phases, h, 3), `bulk` (phases, 3),
+    `diagonal` (3, d) and `out` (2, n).
     """
     ux, uy = grid[0], grid[1]
     half = steps.size
     for s in nb.prange(segments.shape[0]):
         cell, size, first = segments[s, 0], segments[s, 1], segments[s, 2]
         kind, column, fcol = segments[s, 3], segments[s, 4], segments[s, 5]
+        phase = segments[s, 6]
         fx, fy = out[0], out[1]
         for j in range(size):
             x, y = ux[cell + j], uy[cell + j]
             if kind == _U(0):
-                fx[first + j] = bulk[0] * x + bulk[1] * y
-                fy[first + j] = bulk[1] * x + bulk[2] * y
+                fx[first + j] = bulk[phase, 0] * x + bulk[phase, 1] * y
+                fy[first + j] = bulk[phase, 1] * x + bulk[phase, 2] * y
             else:
                 k = column + j
                 fx[first + j] = diagonal[0, k] * x + diagonal[1, k] * y
                 fy[first + j] = diagonal[1, k] * x + diagonal[2, k] * y
         for o in range(half):
-            a, b, c = blocks[o, 0], blocks[o, 1], blocks[o, 2]
+            a, b, c = blocks[phase, o, 0], blocks[phase, o, 1], blocks[phase, o, 2]
             ahead, behind = cell + steps[o], cell - steps[o]
             if kind != _U(2):
                 for j in range(size):
@@ -157,23 +159,24 @@ def central_product(grid, segments, steps, blocks, bulk, diagonal, factors, out)
 def conductive_product(grid, segments, steps, blocks, bulk, diagonal, factors, out):
     """Operator rows of conduction: one unknown.
 
-    As `elastic_product` with `grid` (1, cells), `blocks` (h, 1) holding w k/|ξ|², `bulk` (1,),
-    `diagonal` (1, d) and `out` (1, n).
+    As `elastic_product` with `grid` (1, cells), `blocks` (phases, h, 1) holding w k/|ξ|², `bulk`
+    (phases, 1), `diagonal` (1, d) and `out` (1, n).
     """
     field = grid[0]
     half = steps.size
     for s in nb.prange(segments.shape[0]):
         cell, size, first = segments[s, 0], segments[s, 1], segments[s, 2]
         kind, column, fcol = segments[s, 3], segments[s, 4], segments[s, 5]
+        phase = segments[s, 6]
         flow = out[0]
         if kind == _U(0):
             for j in range(size):
-                flow[first + j] = bulk[0] * field[cell + j]
+                flow[first + j] = bulk[phase, 0] * field[cell + j]
         else:
             for j in range(size):
                 flow[first + j] = diagonal[0, column + j] * field[cell + j]
         for o in range(half):
-            a = blocks[o, 0]
+            a = blocks[phase, o, 0]
             ahead, behind = cell + steps[o], cell - steps[o]
             if kind != _U(2):
                 for j in range(size):
@@ -204,15 +207,15 @@ def block_scale(segments, bulk, own, residual, out):
 
     Parameters
     ----------
-    segments : uint64 (s, 6)
-    bulk : float64 (c, c)
+    segments : uint64 (s, 7)
+    bulk : float64 (phases, c, c)
     own : float64 (c, c, d)
     residual, out : float64 (c, n)
     """
     size_c = residual.shape[0]
     for s in nb.prange(segments.shape[0]):
         size, first = segments[s, 1], segments[s, 2]
-        kind, column = segments[s, 3], segments[s, 4]
+        kind, column, phase = segments[s, 3], segments[s, 4], segments[s, 6]
         for a in range(size_c):
             target = out[a]
             for j in range(size):
@@ -220,7 +223,7 @@ def block_scale(segments, bulk, own, residual, out):
             for b in range(size_c):
                 source = residual[b]
                 if kind == _U(0):
-                    entry = bulk[a, b]
+                    entry = bulk[phase, a, b]
                     for j in range(size):
                         target[first + j] += entry * source[first + j]
                 else:

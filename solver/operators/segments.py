@@ -1,7 +1,7 @@
 """Runs of neighbouring particles of one kind in one grid row, as the kernels read them.
 
 Rows of an unsigned array: first cell, length, first packed row, kind, first column of `diagonal`,
-first column of the bonds' factors (see `solver.operators.kernels`).
+first column of the bonds' factors, phase (see `solver.operators.kernels`).
 """
 
 from __future__ import annotations
@@ -37,7 +37,12 @@ def runs(lattice: Lattice, particles: Indices, kind: Indices) -> tuple[Indices, 
 
 
 def of(
-    lattice: Lattice, particles: Indices, kind: Indices, diagonal: Indices, factors: Indices
+    lattice: Lattice,
+    particles: Indices,
+    kind: Indices,
+    diagonal: Indices,
+    factors: Indices,
+    phase: Indices | None = None,
 ) -> NDArray[np.uint64]:
     """Segments of some particles.
 
@@ -48,10 +53,14 @@ def of(
     diagonal, factors : ndarray of int, shape (n,)
         Column of each particle in `diagonal` and in the factors, −1 without one. Within a run
         they follow each other, because both follow the lattice's order.
+    phase : ndarray of int, shape (n,), optional
+        Of each particle, 0 for all by default.
     """
-    cell, size, first = runs(lattice, particles, kind)
+    phase = np.zeros_like(kind) if phase is None else phase
+    cell, size, first = runs(lattice, particles, kind + (SPECIAL + 1) * phase)
     columns = [cell, size, first, kind[first]]
     columns += [np.maximum(column[first], 0) for column in (diagonal, factors)]
+    columns.append(phase[first])
     return np.ascontiguousarray(np.column_stack(columns), dtype=np.uint64)
 
 
@@ -62,7 +71,7 @@ def clipped(
 
     Parameters
     ----------
-    segments : ndarray of uint, shape (s, 6)
+    segments : ndarray of uint, shape (s, 7)
     width : int
     boxes : ndarray of int, shape (n, 4)
         First row, first column, last row, last column of each, ends included.
@@ -79,6 +88,6 @@ def clipped(
     start = np.maximum(column, boxes[box, 1]) - column
     stop = np.minimum(column + parts[:, 1], boxes[box, 3] + 1) - column
     kept = stop > start
-    parts += start[:, None] * np.array([1, 0, 1, 0, 1, 1])
+    parts += start[:, None] * np.array([1, 0, 1, 0, 1, 1, 0])
     parts[:, 1] = stop - start
     return np.ascontiguousarray(parts[kept], dtype=np.uint64)

@@ -114,27 +114,77 @@ def thickness(
     """e E_τ of some edges of the outline, shape (len(edges),), N/m (or W/K) per unit thickness.
 
     Zero on the faces of cracks. `factors` on the moduli, (edges of the outline, family size / 2).
+    Of a body of several phases each edge has its own phase's.
     """
     result = np.zeros(len(edges))
-    own = np.nonzero(outline.face[edges] == 0)[0]
+    if outline.phase is not None and len(moduli.each) > 1:
+        for phase, own_moduli in enumerate(moduli.each):
+            mine = outline.phase[edges] == phase
+            result[mine] = thickness(outline, family, own_moduli, edges[mine], factors)
+        return result
+    own = np.nonzero(outline.edged[edges])[0]
     if not len(own):
         return result
-    h = family.spacing
-    directions = _Directions.of_family(family)
-    first = outline.nodes[outline.edges[edges[own], 0]]
-    last = outline.nodes[outline.edges[edges[own], 1]]
-    along = last - first
+    along = (
+        outline.nodes[outline.edges[edges[own], 1]] - outline.nodes[outline.edges[edges[own], 0]]
+    )
     along /= np.hypot(*along.T)[:, None]
     at = None if factors is None else factors[edges[own]]
     share, modulus = shares(family, moduli, along, at)
-    summed = np.zeros((len(own), len(directions.step)))
+    result[own] = _lacking(outline, family, edges[own], share) * family.spacing * modulus
+    return result
+
+
+def layers(outline: Outline, family: Family, moduli: Moduli, edges: Indices) -> Array:
+    """The same of interfaces, whose state is not uniaxial: e k of every strain, (strains, edges).
+
+    What lacks is a layer of the bonds along the edge, with each of their strains: stretch (or
+    gradient) along it, and shear, without which the couples that bonds across exert on its nodes
+    would not balance.
+    """
+    result = np.zeros((len(moduli.strains), len(edges)))
+    if len(moduli.each) > 1:
+        assert outline.phase is not None
+        for phase, own in enumerate(moduli.each):
+            mine = outline.phase[edges] == phase
+            result[:, mine] = layers(outline, family, own, edges[mine])
+        return result
+    if not len(edges):
+        return result
+    half = family.size // 2
+    weight = (family.weight * family.cell_area * moduli.pair_length(family))[:half]
+    along = outline.nodes[outline.edges[edges, 1]] - outline.nodes[outline.edges[edges, 0]]
+    along /= np.hypot(*along.T)[:, None]
+    parallel = (along @ family.normal[:half].T) ** 4
+    for place, stiffness in enumerate(moduli.stiffness):
+        strain = result[place]
+        share = parallel * (weight * stiffness[:half])
+        total = share.sum(axis=1)
+        some = np.nonzero(total)[0]
+        share = share[some] / total[some, None]
+        strain[some] = _lacking(outline, family, edges[some], share, place == 0) * total[some]
+    return result * family.spacing
+
+
+def _lacking(
+    outline: Outline, family: Family, edges: Indices, share: Array, short: bool = True
+) -> Array:
+    """Thickness (cells) that lacks along edges, weighted by shares of half offsets that sum to 1.
+
+    With `short` less is taken from short edges than is too much there.
+    """
+    h = family.spacing
+    directions = _Directions.of_family(family)
+    first = outline.nodes[outline.edges[edges, 0]]
+    last = outline.nodes[outline.edges[edges, 1]]
+    summed = np.zeros((len(edges), len(directions.step)))
     for place, direction in enumerate(directions.of):
         summed[:, direction] += share[:, place]
-    round_enough = np.clip((_radius(outline, edges[own]) / h - _TIGHT) / _TIGHT, 0.0, 1.0)
-    chains, length = _chains(outline, edges[own], _BUMP * _REACH * h)
+    round_enough = np.clip((_radius(outline, edges) / h - _TIGHT) / _TIGHT, 0.0, 1.0)
+    chains, length = _chains(outline, edges, _BUMP * _REACH * h)
     # Who owns the edge has the line of particles on it: the body, or the hole whose rim it is.
-    owned = np.ones(len(own), bool) if outline.owned is None else outline.owned[edges[own]]
-    outside = np.where(owned, _ON_EDGE, -_ON_EDGE)[:, None] * outline.outward[edges[own]]
+    owned = np.ones(len(edges), bool) if outline.owned is None else outline.owned[edges]
+    outside = np.where(owned, _ON_EDGE, -_ON_EDGE)[:, None] * outline.outward[edges]
     lack = _lack(
         0.5 * (first + last) / h + outside,
         chains / h + outside[:, None],
@@ -153,16 +203,15 @@ def thickness(
     steps = np.hypot(*(chains[:, 1:] - chains[:, :-1]).transpose(2, 0, 1))
     steps[np.arange(chains.shape[1] - 1) >= (length - 1)[:, None]] = 0.0
     lack[steps.sum(axis=1) < _TIGHT * h] = 0.0
-    least = -0.5 * np.minimum(1.0, outline.length[edges[own]] / (2.0 * h))
-    result[own] = round_enough * np.clip(lack, least, 0.5) * h * modulus
-    return result
+    least = -0.5 * np.minimum(1.0, outline.length[edges] / (2.0 * h)) if short else -0.5
+    return np.asarray(round_enough * np.clip(lack, least, 0.5))
 
 
 def _radius(outline: Outline, edges: Indices) -> Array:
     """Radius of curvature at some edges, from the turns at their ends; corners do not count."""
     ends = outline.nodes[outline.edges]
     angle = np.arctan2(*(ends[:, 1] - ends[:, 0]).T[::-1])
-    here = np.nonzero(outline.face == 0)[0]
+    here = np.nonzero(outline.edged)[0]
     _, following = outline.beside
     after = following[outline.edges[here, 1]]
     turn = np.where(after >= 0, (angle[after] - angle[here] + np.pi) % (2 * np.pi) - np.pi, 0.0)

@@ -15,12 +15,15 @@ from scipy.sparse.linalg import SuperLU, splu
 from ..arrays import Array, Indices, Mask
 from ..bonds import EndedBonds
 from ..bonds.ended import SHORTEST
+from ..geometry.outline import INNER
 from ..material import Family, Moduli, PolarModuli
 from .blocks import entries
-from .skin import thickness
+from .skin import layers, thickness
 
 # Ratio of pivots below which the nodes' stiffness counts as singular.
 _SINGULAR = 1e-14
+# Share of a node's stiffness that a layer along an interface may take, for each of its edges.
+_BORNE = 1.0 / 16.0
 # Particles whose columns are solved for at once.
 _CHUNK = 200
 
@@ -63,10 +66,9 @@ class SurfaceStiffness:
         ends = ended.outline.edges[ended.edge]
         self.nodes = np.unique(ends)
         count = len(self.particles), len(self.nodes)
-        number = np.full(len(ended.outline.nodes), -1)
-        number[self.nodes] = np.arange(count[1])
+        number = self.number
         length = ended.length
-        rule = BondStrains(family, moduli, ended.offset, length, ended.factor)
+        rule = BondStrains.of(ended, family, moduli)
         whole = family.length[ended.offset]
         particle = rule.rows(-1.0, 0.5 * whole)
         strain_p = place(particle, [(here, np.ones_like(length))], count[0])
@@ -85,6 +87,8 @@ class SurfaceStiffness:
                 for a, b in entries(components)
             ]
         )
+        #: Values of all nodes for those that are free of each other, shape (components·s, free).
+        self._spread = self._sharing(moduli)
         #: K_sp, shape (components·s, components·p).
         self.coupling: sparse.csr_array = sparse.csr_array(scaled.T @ strain_p)
         #: K_ps.
@@ -93,6 +97,10 @@ class SurfaceStiffness:
         if (chords := chord_strains(ended, family, moduli, number)) is not None:
             weight, _, strain = chords
             matrix = matrix + sparse.csc_array(strain.T @ sparse.diags_array(weight) @ strain)
+        inner = None
+        if (found := interface_layers(ended, family, moduli, number)) is not None:
+            inner = found[0].bearable(matrix, self._spread, found[1])
+            bonds_alone, matrix = matrix, matrix + inner.stiffness
         skin = membrane(ended, family, moduli, number)
         #: K_ss.
         self.matrix: sparse.csc_array = matrix + _stiffness_of_skin(skin, matrix.shape)
@@ -104,27 +112,71 @@ class SurfaceStiffness:
             # Where few bonds hold a node, what is too much of the lattice must not soften it.
             self.stiffened = True
             skin = None if skin is None else skin.stiffening()
+            if inner is not None:
+                matrix = bonds_alone + inner.stiffening().stiffness
             self.matrix = matrix + _stiffness_of_skin(skin, matrix.shape)
             self._hold()
             self._lu = self._factorise(number[ended.outline.edges])
 
+    @property
+    def number(self) -> Indices:
+        """Position among `nodes` of every node of the outline, −1 for those without bonds."""
+        found = np.full(len(self.ended.outline.nodes), -1)
+        found[self.nodes] = np.arange(len(self.nodes))
+        return found
+
+    def _sharing(self, moduli: Moduli) -> sparse.csr_array | None:
+        """Which components of which nodes are one; None if none are.
+
+        Phases that meet at an interface move together there. Their rotations are their own: the
+        displacement has a kink, and half its curl a jump.
+        """
+        outline, count = self.ended.outline, len(self.nodes)
+        if outline.shared is None:
+            return None
+        _, place = np.unique(outline.shared[self.nodes], return_inverse=True)
+        column, first = [], 0
+        for turning in moduli.physics.turning[: self.components]:
+            column.append(first + (np.arange(count) if turning else place))
+            first = int(column[-1].max()) + 1
+        where = np.arange(self.components * count), np.concatenate(column)
+        return sparse.csr_array((np.ones(len(where[0])), where), shape=(len(where[0]), first))
+
+    def _gathered(self, nodal: Array) -> Array:
+        """Forces on what is free of each other, for those of all nodes, flattened."""
+        return nodal if self._spread is None else self._spread.T @ nodal
+
+    def _spread_out(self, free: Array) -> Array:
+        """Values of all nodes, flattened."""
+        return free if self._spread is None else self._spread @ free
+
     def _hold(self) -> None:
         """Set the nodes' prescribed components apart: identity rows among the others'."""
-        ended, size = self.ended, self.components * len(self.nodes)
-        #: Prescribed components of the nodes and their values, shape (components·s,).
-        self.held: Mask = np.zeros(size, dtype=bool)
-        self.given: Array = np.zeros(size)
+        ended = self.ended
+        matrix, coupling = self.matrix, self.coupling
+        if self._spread is not None:
+            matrix = sparse.csc_array(self._spread.T @ matrix @ self._spread)
+            coupling = sparse.csr_array(self._spread.T @ coupling)
+        self._whole = matrix
+        #: Prescribed components and their values, of what is free of each other.
+        self.held: Mask = np.zeros(matrix.shape[0], dtype=bool)
+        self.given: Array = np.zeros(matrix.shape[0])
         if ended.held is not None and ended.given is not None:
-            self.held = ended.held[:, self.nodes].ravel()
-            self.given = np.where(self.held, ended.given[:, self.nodes].ravel(), 0.0)
-        self._free_matrix, self._free_coupling = self.matrix, self.coupling
+            times = self._gathered(ended.held[:, self.nodes].ravel().astype(np.float64))
+            given = np.where(ended.held, ended.given, 0.0)[:, self.nodes].ravel()
+            self.held = times > 0
+            self.given = self._gathered(given) / np.maximum(times, 1.0)
+        self._free_matrix, self._free_coupling = matrix, coupling
+        self._back: sparse.csr_array = (
+            self.transposed if self._spread is None else sparse.csr_array(coupling.T)
+        )
         self._scale = 1.0
         if self.held.any():
             free = sparse.diags_array((~self.held).astype(np.float64))
-            self._scale = float(np.abs(self.matrix.diagonal()).mean())
+            self._scale = float(np.abs(matrix.diagonal()).mean())
             identity = sparse.diags_array(self.held * self._scale)
-            self._free_matrix = sparse.csc_array(free @ self.matrix @ free + identity)
-            self._free_coupling = sparse.csr_array(free @ self.coupling)
+            self._free_matrix = sparse.csc_array(free @ matrix @ free + identity)
+            self._free_coupling = sparse.csr_array(free @ coupling)
 
     def _factorise(self, edges: Indices) -> SuperLU:
         """Factors of K_ss. `edges` joins all nodes of the outline, −1 for those without bonds."""
@@ -192,25 +244,28 @@ class SurfaceStiffness:
             Forces on the nodes per volume of a particle.
         """
         force = -(self._free_coupling @ values.ravel()) + self._force(load)
-        return np.asarray(self._lu.solve(force).reshape(self.components, -1))
+        return np.asarray(self._spread_out(self._lu.solve(force)).reshape(self.components, -1))
 
     def _force(self, load: Array | None) -> Array:
-        """Right-hand side of the nodes for loads and prescribed values, shape (components·s,)."""
-        force = np.zeros(len(self.held)) if load is None else load[:, self.nodes].ravel()
+        """Right-hand side of the nodes for loads and prescribed values, shape (free,)."""
+        if load is None:
+            force = np.zeros(len(self.held))
+        else:
+            force = self._gathered(load[:, self.nodes].ravel())
         if self.held.any():
-            force = force - self.matrix @ self.given
+            force = force - self._whole @ self.given
             force[self.held] = self._scale * self.given[self.held]
         return force
 
     def reaction(self, values: Array) -> Array:
         """−K_ps K_ss⁻¹ K_sp u: what the nodes do to the particles, both (components, p)."""
         nodes = self._lu.solve(-(self._free_coupling @ values.ravel()))
-        return np.asarray((self.transposed @ nodes).reshape(values.shape))
+        return np.asarray((self._back @ nodes).reshape(values.shape))
 
     def condensed_load(self, load: Array) -> Array:
         """−K_ps K_ss⁻¹ f: loads of the particles that replace those of the nodes, on the left."""
         nodes = self._lu.solve(self._force(load))
-        return (self.transposed @ nodes).reshape(self.components, -1)
+        return (self._back @ nodes).reshape(self.components, -1)
 
     def condensed(self, basis: sparse.csr_array) -> sparse.csr_array:
         """−Bᵀ K_ps K_ss⁻¹ K_sp B for a sparse basis B of the particles' values."""
@@ -236,7 +291,7 @@ class SurfaceStiffness:
         tuple of ndarray, shapes (strains, k) and (components, k)
         """
         here = np.searchsorted(self.particles, self.ended.particle)
-        ends = np.searchsorted(self.nodes, self.ended.outline.edges[self.ended.edge])
+        ends = self.number[self.ended.outline.edges[self.ended.edge]]
         position = self.ended.position
         there = (1 - position) * nodal[:, ends[:, 0]] + position * nodal[:, ends[:, 1]]
         at = values[:, here]
@@ -315,7 +370,7 @@ def membrane(ended: EndedBonds, family: Family, moduli: Moduli, number: Indices)
     """
     outline, c = ended.outline, moduli.components
     ends = number[outline.edges]
-    edges = np.nonzero((outline.face == 0) & (ends >= 0).all(axis=1))[0]
+    edges = np.nonzero((outline.face == 0) & ended.surface & (ends >= 0).all(axis=1))[0]
     if not len(edges):
         return None
     stiffness = thickness(outline, family, moduli, edges, ended.edge_factor) / family.cell_area
@@ -325,7 +380,7 @@ def membrane(ended: EndedBonds, family: Family, moduli: Moduli, number: Indices)
     rows = np.zeros((1, c, len(edges)))
     rows[0, : len(along)] = along / length
     one = np.ones(len(edges))
-    count = int((number >= 0).sum())
+    count = int(number.max(initial=-1)) + 1
     across = [(ends[edges, 1], one), (ends[edges, 0], -one)]
     found = Membrane(edges, along, stiffness * length, place(rows, across, count))
     if not isinstance(moduli, PolarModuli):
@@ -340,6 +395,88 @@ def membrane(ended: EndedBonds, family: Family, moduli: Moduli, number: Indices)
         np.concatenate([found.weight, bending * length]),
         sparse.csr_array(sparse.vstack([found.strain, place(turned, across, count)])),
     )
+
+
+class Layers(NamedTuple):
+    """What lattices lack along interfaces (`skin.layers`).
+
+    Attributes
+    ----------
+    weight : ndarray, shape (strains, e)
+        Twice the energy for a strain of one along each edge.
+    strain : sparse, shape (strains·e, components·s)
+        These strains of the nodes' values.
+    """
+
+    weight: Array
+    strain: sparse.csr_array
+
+    @property
+    def stiffness(self) -> sparse.csc_array:
+        """Of the nodes."""
+        scaled = sparse.diags_array(self.weight.ravel()) @ self.strain
+        return sparse.csc_array(self.strain.T @ scaled)
+
+    def bearable(
+        self, matrix: sparse.csc_array, spread: sparse.csr_array | None, twin: Indices
+    ) -> Layers:
+        """The same without more softening than the nodes bear.
+
+        Values that alternate from node to node have half the stiffness of the diagonal (as a mass
+        matrix has a third of its row sums), and twice what the layers of both their edges add
+        to it: where each takes no more than a sixteenth half of the stiffness is left. What both
+        sides of an interface add counts together, as the stretch along it is common to both.
+
+        Parameters
+        ----------
+        matrix : sparse, shape (components·s, components·s)
+            The nodes' stiffness without the layers.
+        spread : sparse, optional
+            See `SurfaceStiffness`.
+        twin : ndarray of int, shape (e,)
+            The same edge seen from the other side.
+        """
+        whole = matrix if spread is None else spread.T @ matrix @ spread
+        diagonal = np.abs(whole.diagonal() if spread is None else spread @ whole.diagonal())
+        rows = sparse.csr_array(self.strain)
+        square = sparse.csr_array((rows.data**2, rows.indices, rows.indptr), shape=rows.shape)
+        # What a weight of one adds to its nodes, over what they have.
+        each = square @ sparse.diags_array(1.0 / np.maximum(diagonal, np.finfo(float).tiny))
+        share = np.asarray(each.max(axis=1).todense()).reshape(self.weight.shape)
+        most = _BORNE / share
+        both = self.weight + np.where(self.weight[:, twin] > 0, self.weight[:, twin], 0.0)
+        weight = np.where(both < -most, self.weight - (both + most), self.weight)
+        return self._replace(weight=np.minimum(weight, np.maximum(self.weight, 0.0)))
+
+    def stiffening(self) -> Layers:
+        """Only what stiffens of them."""
+        return self._replace(weight=np.maximum(self.weight, 0.0))
+
+
+def interface_layers(
+    ended: EndedBonds, family: Family, moduli: Moduli, number: Indices
+) -> tuple[Layers, Indices] | None:
+    """Layers along interfaces and the twin of each of their edges, None without interfaces."""
+    outline = ended.outline
+    ends = number[outline.edges]
+    edges = np.nonzero((outline.face == INNER) & (ends >= 0).all(axis=1))[0]
+    if not len(edges):
+        return None
+    length = outline.length[edges]
+    along = (outline.nodes[outline.edges[edges, 1]] - outline.nodes[outline.edges[edges, 0]]).T
+    weight = layers(outline, family, moduli, edges) * length / family.cell_area
+    scales, one = moduli.scales(family.spacing), np.ones(len(edges))
+    count = int(number.max(initial=-1)) + 1
+    strain = sparse.csr_array((weight.size, moduli.components * count))
+    for end, sign in enumerate((-1.0, 1.0)):
+        rows = moduli.end_rows(scales, along / length, sign, 0.5 * length) / length
+        strain = strain + place(rows, [(ends[edges, end], one)], count)
+    places = outline.standing_for(outline.edges[edges])
+    key, back = (places @ np.array(by) for by in ((len(outline.nodes), 1), (1, len(outline.nodes))))
+    order = np.argsort(key)
+    found = order[np.minimum(np.searchsorted(key[order], back), len(order) - 1)]
+    twin = np.where(key[found] == back, found, np.arange(len(edges)))
+    return Layers(weight, strain), twin
 
 
 def _stiffness_of_skin(skin: Membrane | None, shape: tuple[int, int]) -> sparse.csc_array:
@@ -361,8 +498,9 @@ def chord_strains(
     chords = ended.chords
     if chords is None or not len(chords.offset):
         return None
-    rule = BondStrains(family, moduli, chords.offset, chords.length, chords.factor)
-    count = int((number >= 0).sum())
+    phase = None if ended.outline.phase is None else ended.outline.phase[chords.edge[:, 0]]
+    rule = BondStrains(family, moduli, chords.offset, chords.length, chords.factor, phase)
+    count = int(number.max(initial=-1)) + 1
     strain = sparse.csr_array((rule.weight.size, moduli.components * count))
     for end, sign in enumerate((-1.0, 1.0)):
         ends = number[ended.outline.edges[chords.edge[:, end]]]
@@ -374,6 +512,11 @@ def chord_strains(
 class BondStrains:
     """The strains of bonds of given offsets and lengths, as rows of values at their ends."""
 
+    @classmethod
+    def of(cls, ended: EndedBonds, family: Family, moduli: Moduli) -> BondStrains:
+        """Of the bonds that end at a surface or an interface."""
+        return cls(family, moduli, ended.offset, ended.length, ended.factor, ended.phase)
+
     def __init__(
         self,
         family: Family,
@@ -381,6 +524,7 @@ class BondStrains:
         offset: Indices,
         length: Array,
         factor: Array | None = None,
+        phase: Indices | None = None,
     ) -> None:
         self.moduli, self.normal = moduli, family.normal[offset].T
         self.scales = moduli.scales(family.spacing)
@@ -392,7 +536,7 @@ class BondStrains:
         weight = family.weight[offset] * family.cell_area * share
         #: Twice the energy for a strain of one, shape (strains, k).
         self.weight: Array = (
-            weight * moduli.pair_length(family)[offset] * moduli.stiffness[:, offset]
+            weight * moduli.pair_length(family)[offset] * moduli.of_bonds(offset, phase)
         )
         if factor is not None:
             self.weight *= factor

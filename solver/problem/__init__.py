@@ -4,5 +4,6 @@ from .conditions import Load, Support
 from .description import Description
 from .discretisation import Discretisation
 from .forcing import Forcing
+from .inclusions import Inclusion
 
-__all__ = ["Description", "Discretisation", "Forcing", "Load", "Support"]
+__all__ = ["Description", "Discretisation", "Forcing", "Inclusion", "Load", "Support"]

@@ -16,8 +16,10 @@ from scipy import ndimage
 
 from ..arrays import Array, Mask
 from ..bonds import Bonds, Surface
+from ..bonds.ended import SHORTEST
 from ..errors import SceneError
 from ..geometry import Crack, Lattice
+from ..geometry.outline import INNER
 
 # Part of a cell that is left over and nobody sees.
 _WHOLE = 1e-3
@@ -67,6 +69,24 @@ def left_over(lattice: Lattice, surface: Surface) -> tuple[str, ...]:
     return (
         f"the body is {drawn}, and is solved as whole ones, {off:+.2%} of its area: "
         f"surface={surface!r} lets it end with its outermost cells",
+    )
+
+
+def on_interfaces(bonds: Bonds) -> tuple[str, ...]:
+    """Says so if particles lie on an interface between phases, where bonds end without a length."""
+    ended = bonds.ended
+    if bonds.phases is None or ended is None:
+        return ()
+    short = (ended.outline.face[ended.edge] == INNER) & (
+        ended.length < SHORTEST * bonds.lattice.spacing
+    )
+    count = len(np.unique(ended.particle[short]))
+    if not count:
+        return ()
+    return (
+        f"{count} particles lie on an interface between two materials, or within "
+        f"{SHORTEST:g} cells of it: it seems up to that much thicker than it is (shift the lattice "
+        f"with the scene's phase, or the spacing)",
     )
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from numbers import Real
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 from ..arrays import Mask
 from ..bonds import Bonds, Factors, Surface, check_surface
@@ -26,7 +26,9 @@ from ..material import (
 )
 from ..material.influence import influence
 from ..material.physics import Physics
+from . import thickness
 from .conditions import Load, Support
+from .inclusions import Inclusion, check
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,12 @@ class Description:
     factors : callable, optional
         ``factors(bonds, moduli)`` → `solver.bonds.Factors` on the moduli of single bonds, such as
         those of a strained conductor (`solver.strained`).
+    inclusions : sequence of Inclusion
+        Parts of the body that are of other solids, bonded to the rest. Bonds end at the
+        interfaces, whose nodes both sides share, with every treatment of surfaces.
+    thickness : number or function of (x, y), optional
+        m; see `solver.problem.thickness`. Without it, and without any of an inclusion, everything
+        is per unit thickness; with it forces, energies and currents are those of the body.
 
     Raises
     ------
@@ -96,6 +104,8 @@ class Description:
     density: float | None = None
     heat_capacity: float | None = None
     factors: Callable[[Bonds, Moduli], Factors] | None = None
+    inclusions: Sequence[Inclusion] = ()
+    thickness: float | Callable[..., Any] | None = None
 
     def __post_init__(self) -> None:
         check_surface(self.surface)
@@ -108,7 +118,12 @@ class Description:
                 f"material must be an ElasticTensor, a ConductivityTensor or an "
                 f"ElectricConductivityTensor, not {type(self.material).__name__}"
             )
-        listed: dict[str, type] = {"supports": Support, "loads": Load, "cracks": Crack}
+        listed: dict[str, type] = {
+            "supports": Support,
+            "loads": Load,
+            "cracks": Crack,
+            "inclusions": Inclusion,
+        }
         for name, kind in listed.items():
             items = getattr(self, name)
             if not isinstance(items, Sequence) or not all(isinstance(i, kind) for i in items):
@@ -130,6 +145,8 @@ class Description:
         for load in self.loads:
             if load.kind not in self.physics.loads:
                 raise SceneError(f"a {load.kind} does not act on {self.physics.adjective} body")
+        check(self)
+        thickness.check(self)
 
     @property
     def physics(self) -> Physics:

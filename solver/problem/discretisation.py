@@ -8,8 +8,9 @@ from functools import cached_property
 from time import perf_counter
 
 import numpy as np
+from scipy.spatial import KDTree
 
-from ..arrays import Array, Mask
+from ..arrays import Array, Indices, Mask
 from ..bonds import Bonds
 from ..errors import MechanismError, SceneError
 from ..geometry import (
@@ -19,15 +20,16 @@ from ..geometry import (
     Frame,
     Lattice,
     Outline,
+    Phases,
     Quadrature,
     on_edges,
     on_particles,
     volumes,
 )
-from ..material import Family, Moduli, Stability, calibrated, require_admissible
+from ..material import Family, Moduli, Stability
 from ..operators import BondOperator
 from ..operators.eigenstrain import Eigenstrain
-from . import cautions, leads, mechanisms
+from . import cautions, inclusions, leads, mechanisms, thickness
 from . import constraints as constraints_of
 from .conditions import evaluate
 from .constraints import Constraints
@@ -102,8 +104,7 @@ class Discretisation:
         """
         begun = perf_counter()
         family = scene.family()
-        moduli = calibrated(family, scene.material, scene.calibration, scene.law)
-        stability = require_admissible(family, moduli)
+        each, stability = inclusions.solids(scene, family)
         if not constrained and any(support.constrains for support in scene.supports):
             raise SceneError(
                 "rigid pins and equal unknowns (Support.pin, Support.equal) are known to statics "
@@ -115,13 +116,15 @@ class Discretisation:
             )
         lattice = Lattice(scene.region, scene.spacing, family.reach, scene.phase)
         cracks = _moved(scene.cracks, lattice)
+        phases = inclusions.phases_of(scene, lattice)
+        moduli = inclusions.mixed(each, phases)
         prescribed, values = _supports(scene, lattice, moduli)
         leads.check(scene, lattice, prescribed)
         relating = [support for support in scene.supports if support.constrains]
         constraints = constraints_of.build(relating, lattice, moduli, prescribed, values)
         load = _loads(scene, lattice, moduli)
         sharp_tips = sharp_tips and scene.broken is None
-        on_edges = edge_loads(scene, lattice, sharp_tips)
+        on_edges = edge_loads(scene, lattice, sharp_tips, phases)
         # Loads act on the nodes at which bonds end: one outline serves both.
         outline = on_edges[0].outline if on_edges else None
         broken = scene.broken(lattice, family) if scene.broken else None
@@ -129,12 +132,22 @@ class Discretisation:
         aside = np.zeros(lattice.count, dtype=bool)
         while True:
             bonds = Bonds(
-                lattice.centred, family, cracks, scene.surface, held, broken, sharp_tips, outline
+                lattice.centred,
+                family,
+                cracks,
+                scene.surface,
+                held,
+                broken,
+                sharp_tips,
+                outline,
+                phases,
             )
             if bonds.ended is not None:
                 outline = bonds.ended.outline
             if scene.factors is not None:
                 bonds = bonds.scaled(scene.factors(bonds, moduli))
+            if (thick := thickness.factors(scene, lattice, bonds)) is not None:
+                bonds = bonds.scaled(thick)
             _hold_edges(scene, bonds, moduli)
             operator = BondOperator(bonds, moduli, prescribed)
             loose, why = mechanisms.find(
@@ -201,9 +214,34 @@ class Discretisation:
         area of the body (`solver.geometry.strips`); the other treatments let the body end at its
         outermost cells, and every particle is a whole one.
         """
-        if self.scene.surface == "extrapolated":
+        if self.scene.surface != "extrapolated":
+            return np.ones(self.lattice.count)
+        if self.bonds.phases is None:
             return volumes(self.lattice)
-        return np.ones(self.lattice.count)
+        found = np.zeros(self.lattice.count)
+        for k, part in enumerate(self.bonds.phases.lattices):
+            found[self.bonds.phases.of == k] = volumes(part)
+        return found
+
+    def storage(self, name: str) -> Array:
+        """`volumes` times thickness and density (or heat capacity) over the scene's own, (N,).
+
+        Parameters
+        ----------
+        name : {"density", "heat_capacity"}
+        """
+        found = self.volumes if self.thickness is None else self.volumes * self.thickness
+        if self.bonds.phases is None:
+            return found
+        shares = inclusions.shares(self.scene, name)
+        return np.asarray(found * shares[self.bonds.phases.of])
+
+    @property
+    def thickness(self) -> Array | None:
+        """Thickness of every particle, shape (N,), m; None where all is per unit thickness."""
+        if not thickness.varies(self.scene):
+            return None
+        return thickness.of_particles(self.scene, self.lattice)
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
@@ -215,6 +253,7 @@ class Discretisation:
             (
                 *self.bonds.warnings,
                 *cautions.left_over(lattice, scene.surface),
+                *cautions.on_interfaces(self.bonds),
                 *cautions.thin_layers(lattice, given, scene.m),
                 *cautions.thin_members(lattice, scene.m, scene.surface),
             )
@@ -330,6 +369,7 @@ def _loads(scene: Description, lattice: Lattice, moduli: Moduli) -> Array:
         if item.density is None:
             continue
         mask, density = item.density(lattice, scene.surface == "extrapolated")
+        density = thickness.scaled(density, scene, lattice, np.nonzero(mask)[0])
         for column, unknown in enumerate(physics.loads[item.kind]):
             if unknown >= moduli.components:
                 raise SceneError(f"a body {item.kind} {physics.missing[unknown]}")
@@ -354,15 +394,21 @@ def _moved(cracks: Sequence[Crack], lattice: Lattice) -> list[Crack]:
     ]
 
 
-def edge_loads(scene: Description, lattice: Lattice, sharp_tips: bool = True) -> list[Quadrature]:
+def edge_loads(
+    scene: Description, lattice: Lattice, sharp_tips: bool = True, phases: Phases | None = None
+) -> list[Quadrature]:
     """Loads on the body's edges, evaluated, in the order of the scene's loads."""
     edges = [item.edge for item in scene.loads if item.edge is not None]
     if not edges:
         return []
     near = lattice.centred
-    cracks = CrackSet.joined(Frame.of(near), _moved(scene.cracks, lattice), Body.of(near))
-    outline = Outline.of(near.region, cracks, near.spacing, sharp_tips)
-    return [edge(outline, near.shift) for edge in edges]
+    moved = _moved(scene.cracks, lattice)
+    if phases is not None:
+        outline = phases.outline(moved, sharp_tips)
+    else:
+        cracks = CrackSet.joined(Frame.of(near), moved, Body.of(near))
+        outline = Outline.of(near.region, cracks, near.spacing, sharp_tips)
+    return [thickness.loaded(scene, edge(outline, near.shift)) for edge in edges]
 
 
 def _share_out(
@@ -391,10 +437,24 @@ def _share_out(
         # Edges without nodes: no treatment that has any, or held particles behind them.
         if felt.all():
             continue
-        _, nearest = lattice.centred.tree.query(rule.points[~felt])
+        nearest = _nearest(lattice, operator.bonds.phases, rule, np.asarray(~felt))
         for component, values in enumerate(force):
             np.add.at(load[component], nearest, values[~felt])
     return nodal
+
+
+def _nearest(lattice: Lattice, phases: Phases | None, rule: Quadrature, which: Mask) -> Indices:
+    """The particle that is nearest to each of some points of a rule, of the edge's own phase."""
+    points, near = rule.points[which], lattice.centred
+    if phases is None or rule.outline.phase is None:
+        return np.asarray(near.tree.query(points)[1])
+    phase = rule.outline.phase[rule.edge[which]]
+    found = np.zeros(len(points), dtype=np.int64)
+    for k in np.unique(phase):
+        own = np.nonzero(phases.of == k)[0]
+        _, place = KDTree(near.points[own]).query(points[phase == k])
+        found[phase == k] = own[place]
+    return found
 
 
 def _concentrate(
@@ -411,6 +471,8 @@ def _concentrate(
         if item.points is None:
             continue
         places, force = item.points(scene.spacing)
+        if thickness.varies(scene):
+            force = force * thickness.at(scene, places)[:, None]
         places, force = places - near.shift, force.T / scene.spacing**2
         unknowns = scene.physics.loads[item.kind]
         inside = np.ones(len(places), dtype=bool)

@@ -13,6 +13,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import SceneError
 from ..geometry import Outline
+from . import thickness
 from .description import Description
 from .discretisation import (
     Discretisation,
@@ -87,7 +88,11 @@ class Forcing:
             load = _loads(scene, body.lattice, body.moduli)
             edges = [item.edge for item in scene.loads if item.edge is not None]
             shift = body.lattice.centred.shift
-            rules = [] if self._outline is None else [edge(self._outline, shift) for edge in edges]
+            rules = (
+                []
+                if self._outline is None
+                else [thickness.loaded(scene, edge(self._outline, shift)) for edge in edges]
+            )
             nodal = _share_out(rules, body.lattice, body.operator, load)
             _concentrate(scene, body.lattice, self._cracks, body.operator, load, nodal)
             if load[:, np.isnan(values).any(axis=0)].any():

@@ -45,9 +45,9 @@ def slack_particles(operator: BondOperator) -> NDArray[np.int64]:
     blocks = operator.own_blocks
     if not len(blocks):
         return np.zeros(0, dtype=np.int64)
-    bulk = np.abs(np.diagonal(operator.bulk_block))
-    unit = np.sqrt(np.maximum(bulk, np.finfo(np.float64).tiny))
-    sizes = np.abs(np.linalg.eigvalsh(blocks / np.outer(unit, unit)))
+    bulk = np.abs(np.einsum("pii->pi", operator.bulk_blocks))
+    unit = np.sqrt(np.maximum(bulk, np.finfo(np.float64).tiny))[operator.phase[operator.own]]
+    sizes = np.abs(np.linalg.eigvalsh(blocks / (unit[:, :, None] * unit[:, None])))
     slack = sizes.min(axis=1) <= _SINGULAR * max(float(sizes.max()), 1.0)
     return operator.active[operator.own[slack]]
 

@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ..arrays import Array, Mask
 from ..bonds import Bonds
+from ..geometry.outline import INNER
 from ..material.physics import Physics
 from .constraints import Constraints
 
@@ -42,6 +43,15 @@ def parts(bonds: Bonds) -> tuple[int, NDArray[np.int32]]:
     order = np.argsort(family.length[: family.size // 2], kind="stable")
     starts: list[NDArray[np.int64]] = []
     ends: list[NDArray[np.int64]] = []
+    total = lattice.count
+    if bonds.phases is not None and bonds.ended is not None:
+        # Phases are joined by the nodes of their interfaces.
+        ended = bonds.ended
+        inner = ended.outline.face[ended.edge] == INNER
+        nodes = ended.outline.standing_for(ended.outline.edges[ended.edge[inner]])
+        starts.append(np.repeat(ended.particle[inner], 2))
+        ends.append(lattice.count + nodes.ravel())
+        total += len(ended.outline.nodes)
     count, labels = lattice.count, np.zeros(lattice.count, dtype=np.int32)
     for position, o in enumerate(order):
         dx, dy = family.offsets[o]
@@ -50,10 +60,13 @@ def parts(bonds: Bonds) -> tuple[int, NDArray[np.int32]]:
         ends.append(numbers[rows[here] + dy, columns[here] + dx])
         if position in (3, len(order) - 1):
             i, j = np.concatenate(starts), np.concatenate(ends)
-            graph = sparse.coo_array(
-                (np.ones(len(i), dtype=np.int8), (i, j)), shape=(lattice.count, lattice.count)
-            )
+            graph = sparse.coo_array((np.ones(len(i), dtype=np.int8), (i, j)), shape=(total, total))
             count, labels = connected_components(graph, directed=False)
+            if total > lattice.count:
+                # Nodes of no bond count for nothing.
+                _, numbered = np.unique(labels[: lattice.count], return_inverse=True)
+                labels = numbered.astype(np.int32)
+                count = int(labels.max()) + 1
             if count == 1:
                 break
     return count, labels

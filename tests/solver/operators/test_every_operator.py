@@ -150,7 +150,7 @@ def rigid(operator: BondOperator) -> list[np.ndarray]:
 
 def test_an_operator_that_is_wrong_is_seen():
     operator = bonds(ISOTROPIC)
-    operator.blocks[0] *= 1.01
+    operator.half_blocks[0, 0] *= 1.01
 
     class Wrong(LinearOperator):
         def _matvec(self, x):
