@@ -21,7 +21,7 @@ from cmverify.judge.norms import relative_l2, worst
 
 M = 3
 CELLS = 10
-CONTRASTS = (1e-3, 30.0, 1e3)
+CONTRASTS = (1e-3, 1e3)
 RADIUS = 0.5
 #: Plate and disc: Young's moduli and Poisson's ratios; the stress far away.
 PLATE, DISC, FAR = (1.0, 0.2), (10.0, 0.25), (1.0, 0.3, 0.4)
@@ -166,7 +166,7 @@ CASES = (
     Case(
         name="bimaterial-patch",
         title="Two solids on both sides of an interface, and bands of another thickness",
-        section="beyond the paper",
+        section="Sect. 2, beyond the paper",
         equations=(),
         tags=("bimaterial", "conduction", "elasticity"),
         shows=(
@@ -204,7 +204,7 @@ CASES = (
     Case(
         name="bimaterial-disc",
         title="A disc ten times as stiff in a plate under a uniform stress",
-        section="beyond the paper",
+        section="Sect. 2, beyond the paper",
         equations=(),
         tags=("bimaterial", "elasticity"),
         shows=(
