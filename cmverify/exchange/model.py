@@ -421,7 +421,7 @@ class Fracture(Table):
     n: Count = Field(default=2, description="Even exponent of the toughness law")
     frequency: Count = Field(default=1, description="Lobes of the toughness law over a half turn")
     axis_degrees: Number = Field(default=0.0, description="Axis of the toughness law")
-    toughness_calibration: Literal["lattice", "continuum", "even"] = "lattice"
+    toughness_calibration: Literal["lattice", "continuum", "even", "directions"] = "lattice"
     start: NotNegative = Field(default=0.0, description="First load factor")
     stop: NotNegative | None = Field(default=None, description="Last load factor")
     increment: Positive | None = Field(default=None, description="Of the load factor")

@@ -1,4 +1,4 @@
-"""Fracture experiments, the paper's and a pair of cracks: bodies that are loaded until they part."""
+"""Fracture experiments, the paper's and a pair of cracks: bodies loaded until they part."""
 
 from . import bone, inclusion, notched_plate, pair
 

@@ -26,6 +26,27 @@ they attract each other):
 5. The inner tips do not run into each other. They pass, and end at the flank of the other crack,
    as hooks: each inner path comes within a horizon of the other crack beyond its tip.
 6. Point-symmetric to the last bond.
+
+**What the first runs gave**
+
+1, 3 and 4 hold (the outer tips have half a cell of damage ahead; the ligament cost 1.08 and 1.05 G
+a length at c/8 and c/16), but at c/16 six bonds had no image: within avalanches equilibria were so
+coarse that images differed by more than what counts as a tie. That was a fault of the engine; with
+a residual of 1e-6 instead of 1e-5 there they have.
+
+2 was wrong in sign: loads were 1.014 and 1.060 at c/8 and c/16, not 0.8 and 0.9. The estimate took
+K_I to grow as the ligament to the power −1/2; in the infinite plane it grows by 6 % from c/2 to
+0.4 c, less where displacements are held, and a lattice traps a crack by 4 % in load, which the
+estimate left out. Whether that is all has not been measured. The bounds, 15 % and 8 %, are what
+they were.
+
+5 holds in words: the tips pass by 0.44 c at c/16 and hook into each other, 0.19 c apart (a horizon
+is 0.31 c). The number that was to judge it did not say this: it asked for a path beyond the other
+crack's *first* tip, but both move; it now asks where the other path ends. Nothing of the avoiding
+is seen: the tips go straight on, then hook.
+
+6 failed in the first run because the scene was not its own image: one grip was held sideways, the
+other was not. Now both are.
 """
 
 from __future__ import annotations
@@ -110,8 +131,7 @@ class Pair:
             depth = self.size - HALF / n
             return Support.where(
                 lambda x, y: side * y > depth,
-                u2=side * self.size * self.tension / YOUNG,
-                **({"u1": 0.0} if side < 0 else {}),
+                displacement=(0.0, side * self.size * self.tension / YOUNG),
             )
 
         return [grip(-1.0), grip(1.0)]
@@ -203,10 +223,11 @@ def passing(pair: Pair, n: int) -> Measurement:
     run = led.run
     horizon = pair.m * HALF / n
     left, right = _inner(run, pair.lift)
-    # The left crack's inner tip moves to the right; the other crack lies above it.
-    beyond = float(left[-1, 0] - INNER) / HALF
-    flank = float(np.abs(left[-1, 1] - pair.lift))
-    nearest = float(np.hypot(*(left[:, None] - right[None]).transpose(2, 0, 1)).min())
+    # The left crack's inner tip moves to the right, that of the right crack to the left.
+    beyond = float(left[-1, 0] - right[-1, 0]) / HALF
+    notch = np.column_stack([np.linspace(INNER, OUTER, 200), np.full(200, pair.lift)])
+    other = np.vstack([right, notch])
+    flank = float(np.hypot(*(other - left[-1]).T).min())
     away = float((-pair.lift - left[:, 1]).max()) / HALF
     return Measurement(
         unknowns=run.body.operator.shape[0],
@@ -217,12 +238,11 @@ def passing(pair: Pair, n: int) -> Measurement:
             "balance": led.balance,
             "beyond": beyond,
             "away": away,
-            "nearest": nearest / HALF,
         },
         seconds=led.seconds,
         statistics=led.statistics
         | {
-            "beyond the other tip, c": round(beyond, 3),
+            "passed by, c": round(beyond, 3),
             "away from the other, c": round(away, 3),
             "from the flank, c": round(flank / HALF, 3),
         },
@@ -278,7 +298,7 @@ CASES = (
         "reaches √(E G); offset ones pass each other and hook into each other's flanks.",
         methods=(_COLLINEAR, _OFFSET),
         checks=(
-            Check("collinear", "load", {16: 0.15, 32: 0.08}, source=SOURCE),
+            Check("collinear", "load", {8: 0.2, 16: 0.15, 32: 0.08}, source=SOURCE),
             Check("collinear", "first break", {8: 1.0}, source="K_I of the inner tips is larger "
                   "by 5.8 %: what breaks first is within a horizon of them"),
             Check("collinear", "outer advance", {16: 2.0}, source=SOURCE, exact=True),
@@ -301,12 +321,11 @@ CASES = (
             "outer advance": "of the outer tips when the ligament is gone, cells",
             "straying": "distance of the furthest broken bond from the cracks' line, horizons",
             "unmirrored": "broken bonds whose image in an axis or under half a turn is whole",
-            "short of passing": "how far the left tip ends short of the right crack's tip, c",
+            "short of passing": "by how much the paths from the inner tips do not overlap, c",
             "from the flank": "distance of the left path's end from the right crack, horizons",
             "unturned": "broken bonds whose image under half a turn is whole",
-            "beyond": "how far the left tip has passed the right crack's tip, c (shown)",
+            "beyond": "by how much the paths from the inner tips overlap, c (shown)",
             "away": "how far the left tip goes away from the other crack, c (shown)",
-            "nearest": "least distance of the two inner paths, c (shown)",
             **DESCRIPTIONS,
         },
         primary="load",
