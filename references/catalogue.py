@@ -5,6 +5,7 @@ from typing import Any
 from references.generators import (
     MATERIALS,
     compact_tension_by_pins,
+    compact_tension_growth,
     crack_tip_samples,
     heated_disc_samples,
     kink_factors,
@@ -153,5 +154,17 @@ def catalogue() -> dict[str, Reference]:
         ),
         _strained("isotropic", resistivities=[1.0, 1.0], angle=0.0, resistive=False, actual=False),
         _strained("bone", resistivities=[170.0, 540.0], angle=0.5, resistive=True, actual=True),
+        Reference(
+            "compact-tension-growth",
+            "The same with the fibres along the crack: force and K a metre by the crack's length",
+            _PAPER + ", Sect. 3.1.2; ASTM E399 (proportions)",
+            compact_tension_growth,
+            {
+                "material": "bone",
+                "width": 25.8e-3,
+                "ratios": [0.36, 0.4, 0.44, 0.48, 0.52],
+                "elements": 16,
+            },
+        ),
     ]
     return {entry.name: entry for entry in entries}

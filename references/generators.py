@@ -311,6 +311,32 @@ def notched_plate(unit: float, young: float, poisson: float, size: float) -> Gen
     )
 
 
+def _specimen_by_pins(
+    material: str,
+    degrees: Sequence[float],
+    width: float,
+    ratio: float,
+    count: int,
+) -> tuple[Mesh, NDArray[np.float64]]:
+    """A mesh with `count` elements a side, and force, K_I, K_II for each turn of the material."""
+    shift, radius, offset = -0.375 * width, 0.125 * width, 0.275 * width
+    centres = ((shift, -offset), (shift, offset))
+    tip = (ratio * width + shift, 0.0)
+    mesh = rectangle(
+        1.25 * width, 1.2 * width, 1.25 * width / count,
+        holes=[(*centre, radius) for centre in centres],
+        cracks=[((-0.625 * width, 0.0), tip)],
+        tip_size=ratio * width / (100 * count),
+        hole_size=2 * radius / count,
+    )  # fmt: skip
+    rows = []
+    for angle in degrees:
+        voigt = turned_axes(1e9 * MATERIALS[material], -np.radians(angle))
+        pulled = pulled_by_pins(mesh, voigt, centres, sliding=False)
+        rows.append([pulled.stiffness, *pulled.intensities(tip, 0.0, 0.15 * width)])
+    return mesh, np.array(rows)
+
+
 def compact_tension_by_pins(
     material: str, degrees: Sequence[float], width: float, ratio: float, elements: int
 ) -> Generated:
@@ -320,25 +346,11 @@ def compact_tension_by_pins(
 
     Per unit displacement of the upper pin and unit thickness: force (N/m²), K_I, K_II (Pa/√m).
     """
-    shift, radius, offset = -0.375 * width, 0.125 * width, 0.275 * width
-    centres = ((shift, -offset), (shift, offset))
-    tip = (ratio * width + shift, 0.0)
     meshes, found = [], []
     for count in (elements, elements // 2):
-        mesh = rectangle(
-            1.25 * width, 1.2 * width, 1.25 * width / count,
-            holes=[(*centre, radius) for centre in centres],
-            cracks=[((-0.625 * width, 0.0), tip)],
-            tip_size=ratio * width / (100 * count),
-            hole_size=2 * radius / count,
-        )  # fmt: skip
+        mesh, rows = _specimen_by_pins(material, degrees, width, ratio, count)
         meshes.append(mesh)
-        rows = []
-        for angle in degrees:
-            voigt = turned_axes(1e9 * MATERIALS[material], -np.radians(angle))
-            pulled = pulled_by_pins(mesh, voigt, centres, sliding=False)
-            rows.append([pulled.stiffness, *pulled.intensities(tip, 0.0, 0.15 * width)])
-        found.append(np.array(rows))
+        found.append(rows)
     fine, coarse = found
     names = ("stiffness", "KI", "KII")
     scale = np.abs(fine).max(axis=0)
@@ -347,6 +359,32 @@ def compact_tension_by_pins(
     return Generated(
         {"degrees": np.array(degrees, dtype=float)} | dict(zip(names, fine.T, strict=True)),
         {"degrees": 0.0} | dict(zip(names, error.tolist(), strict=True)),
+        tuple(meshes),
+        2,
+    )
+
+
+def compact_tension_growth(
+    material: str, width: float, ratios: Sequence[float], elements: int
+) -> Generated:
+    """The specimen of `compact_tension_by_pins` with straight cracks of several lengths a/W.
+
+    Per unit displacement of the upper pin and unit thickness: force (N/m²) and K_I (Pa/√m).
+    """
+    meshes, found = [], []
+    for count in (elements, elements // 2):
+        rows = []
+        for ratio in ratios:
+            mesh, values = _specimen_by_pins(material, [0.0], width, ratio, count)
+            rows.append(values[0, :2])
+            meshes.append(mesh)
+        found.append(np.array(rows))
+    fine, coarse = found
+    error = np.abs(fine / coarse - 1).max(axis=0) / 3
+    names = ("stiffness", "KI")
+    return Generated(
+        {"ratio": np.array(ratios, dtype=float)} | dict(zip(names, fine.T, strict=True)),
+        {"ratio": 0.0} | dict(zip(names, error.tolist(), strict=True)),
         tuple(meshes),
         2,
     )

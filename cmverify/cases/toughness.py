@@ -180,6 +180,7 @@ def measure(m: int, distortion: float = 1.0) -> Measurement:
     """Everything at spacing δ/m; tests perturb the solver's energies by `distortion`."""
     from references.analytic import toughness as exact
     from solver import Family
+    from solver.fracture.directions import least_variation
 
     family = Family(m, HORIZON / m)
     zeta = np.radians(np.linspace(0.0, 90.0, 19))
@@ -196,6 +197,8 @@ def measure(m: int, distortion: float = 1.0) -> Measurement:
     fine = np.radians(np.linspace(0.0, 90.0, 361))
     same = LAWS[0].toughness().fracture_energy(fine, family)
     even = LAWS[0].toughness(calibration="even").fracture_energy(fine, family)
+    levelled = LAWS[0].toughness(calibration="directions").fracture_energy(fine, family)
+    spread = float(distortion * levelled.max() / levelled.min() - 1)
     return Measurement(
         family.size,
         {
@@ -206,6 +209,7 @@ def measure(m: int, distortion: float = 1.0) -> Measurement:
             "bone": bone(family, distortion),
             "isotropy": float(distortion * same.max() / same.min() - 1),
             "even isotropy": float(distortion * even.max() / even.min() - 1),
+            "levelled": abs(spread / least_variation(family) - 1),
         },
         statistics={"bonds a family": family.size},
         lines=_figures(family, np.degrees(zeta), effective),
@@ -257,6 +261,8 @@ QUANTITIES = {
     "curve": "largest relative difference of the lattice's G(ζ) from the continuum's, all laws",
     "even isotropy": "the same with the bonds along the rows of the lattice levelled "
     "(calibration 'even')",
+    "levelled": "relative difference of that spread with calibration 'directions' from the least "
+    "that any energies have, 1/cos(Δ/2) − 1 with the widest gap Δ between bonds",
     "isotropy": "largest over smallest G of a straight cut at any angle, less 1, with one w_c",
 }
 
@@ -299,6 +305,14 @@ CASES = (
                 "even isotropy",
                 {5: 0.0056, 7: 0.0029, 10: 0.0015},
                 source="half of that with one w_c",
+            ),
+            Check(
+                "bond/lattice",
+                "levelled",
+                {5: 0.02},
+                source="theory: G is an arc between directions of bonds; cuts a quarter of a "
+                "degree apart",
+                exact=True,
             ),
             # The sharp lobes of n = 32 are what a small m resolves badly.
             Check(

@@ -11,7 +11,16 @@ import difflib
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StrictBool, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    StrictBool,
+    Tag,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from cmverify.exchange.values import (
@@ -26,6 +35,7 @@ from cmverify.exchange.values import (
     Point,
     Points,
     Positive,
+    Scalar,
     ScalarInTime,
     TripleInTime,
     VectorInTime,
@@ -60,7 +70,15 @@ class Table(BaseModel):
 # ---- the body ---------------------------------------------------------------------------
 
 
-class Disc(Table):
+class _Shape(Table):
+    """A shape, and what it does to those before it in a list."""
+
+    operation: Literal["add", "subtract", "intersect"] = Field(
+        default="add", description="In a list of shapes, one after the other"
+    )
+
+
+class Disc(_Shape):
     """A disc."""
 
     shape: Literal["disc"]
@@ -68,7 +86,7 @@ class Disc(Table):
     centre: Point = Field(default=[0.0, 0.0], description="m")
 
 
-class Rectangle(Table):
+class Rectangle(_Shape):
     """A rectangle with sides along the axes."""
 
     shape: Literal["rectangle"]
@@ -77,14 +95,34 @@ class Rectangle(Table):
     centre: Point = Field(default=[0.0, 0.0], description="m")
 
 
-class Polygon(Table):
+class Polygon(_Shape):
     """A simple polygon."""
 
     shape: Literal["polygon"]
     vertices: Points = Field(description="Corners in turn, m")
 
 
-Region = Annotated[Disc | Rectangle | Polygon, Field(discriminator="shape")]
+Shape = Annotated[Disc | Rectangle | Polygon, Field(discriminator="shape")]
+
+
+def _begins(shapes: list[Any]) -> list[Any]:
+    if not shapes:
+        raise ValueError("a region needs a shape")
+    if shapes[0].operation != "add":
+        raise ValueError(f"the first shape has nothing to {shapes[0].operation} from")
+    return shapes
+
+
+def _one(shape: Any) -> list[Any]:
+    return _begins([shape])
+
+
+#: One shape, or several that are added, subtracted and intersected one after the other.
+Region = Annotated[
+    Annotated[Shape, AfterValidator(_one), Tag("one")]
+    | Annotated[list[Shape], AfterValidator(_begins), Tag("several")],
+    Discriminator(lambda given: "several" if isinstance(given, list) else "one"),
+]
 
 
 class Discretisation(Table):
@@ -194,6 +232,20 @@ class Orthotropic(_Turned):
 Material = Annotated[
     Conductivity | Electric | Elastic | Isotropic | Orthotropic, Field(discriminator="kind")
 ]
+
+
+class Inclusion(Table):
+    """A part of the body that is of another solid, or of another thickness."""
+
+    region: Region
+    material: Material | None = Field(default=None, description="That of the body by default")
+    thickness: Positive | None = Field(default=None, description="m")
+
+    @model_validator(mode="after")
+    def _differs(self) -> Inclusion:
+        if self.material is None and self.thickness is None:
+            raise wrong("", "says nothing of its part of the body: give material or thickness")
+        return self
 
 
 # ---- what holds it and acts on it -------------------------------------------------------
@@ -318,15 +370,31 @@ Load = Annotated[
 
 
 class Crack(Table):
-    """A straight crack."""
+    """A crack: straight from start to end, or along the polyline through points."""
 
-    start: Point = Field(description="m")
-    end: Point = Field(description="m")
+    start: Point | None = Field(default=None, description="m")
+    end: Point | None = Field(default=None, description="m")
+    points: Points | None = Field(default=None, description="Of a polyline, in turn, m")
+
+    @property
+    def path(self) -> list[tuple[float, float]]:
+        """Its points, in turn."""
+        found = self.points if self.points is not None else [self.start or [], self.end or []]
+        return [(x, y) for x, y in found]
 
     @model_validator(mode="after")
     def _length(self) -> Crack:
-        if self.start == self.end:
-            raise wrong("end", "a crack ends elsewhere than it starts")
+        if self.points is None:
+            for key in ("start", "end"):
+                if getattr(self, key) is None:
+                    raise wrong(key, "a crack needs start and end, or points")
+        elif self.start is not None or self.end is not None:
+            raise wrong("points", "a crack has either start and end or points")
+        elif len(self.points) < 2:
+            raise wrong("points", "a crack runs through two points or more")
+        if all(point == self.path[0] for point in self.path):
+            key = "end" if self.points is None else "points"
+            raise wrong(key, "a crack ends elsewhere than it starts")
         return self
 
 
@@ -353,7 +421,7 @@ class Fracture(Table):
     n: Count = Field(default=2, description="Even exponent of the toughness law")
     frequency: Count = Field(default=1, description="Lobes of the toughness law over a half turn")
     axis_degrees: Number = Field(default=0.0, description="Axis of the toughness law")
-    toughness_calibration: Literal["lattice", "continuum", "even"] = "lattice"
+    toughness_calibration: Literal["lattice", "continuum", "even", "directions"] = "lattice"
     start: NotNegative = Field(default=0.0, description="First load factor")
     stop: NotNegative | None = Field(default=None, description="Last load factor")
     increment: Positive | None = Field(default=None, description="Of the load factor")
@@ -385,11 +453,13 @@ class SceneFile(Table):
     """A scene file."""
 
     title: str = ""
+    thickness: Scalar | None = Field(default=None, description="Of the body, m")
     discretisation: Discretisation
     region: Region
     material: Material
     support: list[Support] = []
     load: list[Load] = []
+    inclusion: list[Inclusion] = []
     crack: list[Crack] = []
     solve: Solve = Solve()
     fracture: Fracture | None = None

@@ -12,7 +12,8 @@ import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from math import hypot
+from itertools import pairwise
+from math import dist
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +25,7 @@ from cmverify.exchange.refusal import Place, SceneFileError, Source
 from cmverify.exchange.values import InTime
 
 if TYPE_CHECKING:
-    from solver import Crack, Load, Region, Scene, Support
+    from solver import Crack, Inclusion, Load, Region, Scene, Support
     from solver.result import Result
 
 __all__ = ["Request", "SceneFileError", "read", "request"]
@@ -246,7 +247,12 @@ def _scene(file: SceneFile, source: Source) -> Scene:
         region = _region(file.region)
     with source.at("material"):
         material = _material(file.material)
-    supports, loads, cracks = [], [], []
+    supports, loads, cracks, inclusions = [], [], [], []
+    for i, inclusion in enumerate(file.inclusion):
+        with source.at("inclusion", i):
+            inclusions.append(_inclusion(inclusion, material))
+            # Whether such a solid goes with the body's.
+            Scene(region, options["spacing"], material, inclusions=inclusions[-1:], **_stores(file))
     for i, support in enumerate(file.support):
         with source.at("support", i):
             supports.append(_support(support))
@@ -266,10 +272,17 @@ def _scene(file: SceneFile, source: Source) -> Scene:
             loads=loads,
             cracks=cracks,
             law=_law(law, exponent),
-            density=getattr(file.material, "density", None),
-            heat_capacity=getattr(file.material, "heat_capacity", None),
+            inclusions=inclusions,
+            thickness=file.thickness,
+            **_stores(file),
             **options,
         )
+
+
+def _stores(table: Any) -> dict[str, Any]:
+    """Density and heat capacity of a file's, or an inclusion's, material."""
+    names = ("density", "heat_capacity")
+    return {name: getattr(table.material, name, None) for name in names}
 
 
 def _law(name: str | None, exponent: int | None) -> Any:
@@ -286,12 +299,29 @@ def _law(name: str | None, exponent: int | None) -> Any:
     return laws[name]()
 
 
-def _region(table: Any) -> Region:
+def _region(shapes: Any) -> Region:
     import solver
 
-    values = {k: tuple(v) if k == "centre" else v for k, v in table if k != "shape"}
-    region: Region = getattr(solver, table.shape)(**values)
-    return region
+    found: Region | None = None
+    own = ("shape", "operation")
+    for table in shapes:
+        values = {k: tuple(v) if k == "centre" else v for k, v in table if k not in own}
+        shape: Region = getattr(solver, table.shape)(**values)
+        if found is None:
+            found = shape
+        elif table.operation == "subtract":
+            found = found - shape
+        else:
+            found = found | shape if table.operation == "add" else found & shape
+    assert found is not None
+    return found
+
+
+def _inclusion(table: model.Inclusion, material: Any) -> Inclusion:
+    from solver import Inclusion
+
+    own = material if table.material is None else _material(table.material)
+    return Inclusion(_region(table.region), own, thickness=table.thickness, **_stores(table))
 
 
 def _material(table: Any) -> Any:
@@ -344,7 +374,7 @@ def _load(table: Any) -> Load:
 def _crack(table: model.Crack) -> Crack:
     from solver import Crack
 
-    return Crack(tuple(table.start), tuple(table.end))  # type: ignore[arg-type]
+    return Crack(*table.path)
 
 
 # ---- what can be known without solving --------------------------------------------------
@@ -366,7 +396,7 @@ def _afford(
         float(scene.m),
         len(scene.physics.unknowns),
         scene.surface,
-        sum(hypot(c.end[0] - c.start[0], c.end[1] - c.start[1]) for c in file.crack),
+        sum(dist(a, b) for crack in file.crack for a, b in pairwise(crack.path)),
         file.fracture is not None,
     )
     free = budget.SHARE * budget.free_memory() if memory is None else memory
@@ -379,13 +409,21 @@ def _afford(
 def _try_on_lattice(file: SceneFile, scene: Scene, source: Source, start: float) -> None:
     """Evaluate conditions, and values at the start, where they will be needed."""
     from solver.geometry import Lattice, select
+    from solver.problem import thickness
     from solver.problem.conditions import at_time, evaluate
     from solver.problem.discretisation import edge_loads
+    from solver.problem.inclusions import phases_of
 
     with source.at("discretisation"):
         family = scene.family()
     with source.at("discretisation", "spacing"):
         lattice = Lattice(scene.region, scene.spacing, family.reach)
+    if scene.inclusions:
+        with source.at("inclusion"):
+            phases_of(scene, lattice)
+    if thickness.varies(scene):
+        with source.at("thickness"):
+            thickness.of_particles(scene, lattice)
     for i, (table, support) in enumerate(zip(file.support, scene.supports, strict=True)):
         key = "where" if table.layer_cells is None else "layer_cells"
         with source.at("support", i):

@@ -58,6 +58,12 @@ _turn = result(lambda angle: angle + np.radians(5.0))
 FAULTS = (
     # ---- closed forms -------------------------------------------------------------------
     Fault(
+        "K of a pair of cracks + 25 %",
+        f"{A}.crack_pair.intensities",
+        scaled(1.25),
+        "closed forms",
+    ),
+    Fault(
         "crack-tip displacement + 1 %",
         f"{A}.lekhnitskii.crack_tip_displacement",
         scaled(1.01),
@@ -336,6 +342,18 @@ FAULTS = (
         "stored intensities + 1 %",
         "references.provenance.load",
         _stored(1.01, "isotropic", "bone", "anisotropic"),
+        "stored tables",
+    ),
+    Fault(
+        "stored stiffness of pinned bodies + 8 %",
+        "references.provenance.load",
+        _stored(1.08, "stiffness"),
+        "stored tables",
+    ),
+    Fault(
+        "stored K_I of pinned bodies + 10 %",
+        "references.provenance.load",
+        _stored(1.1, "KI"),
         "stored tables",
     ),
     Fault(

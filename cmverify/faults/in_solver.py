@@ -45,6 +45,15 @@ def _poisson_transposed(right: Function) -> Function:
     return wrong
 
 
+def _without_turning(right: Function) -> Function:
+    """Pins whose rotation is held."""
+
+    def wrong(cls: Any, where: Any, centre: Any = None, **motion: Any) -> Any:
+        return right(cls, where, centre, **{"rotation": 0.0, **motion})
+
+    return wrong
+
+
 def _load(alter: Callable[[Any], Any]) -> Callable[[Function], Function]:
     """The densities of a load in the body altered."""
 
@@ -444,6 +453,24 @@ FAULTS = (
         "solver.fracture.toughness.evenness",
         result(np.ones_like),
         "toughness",
+    ),
+    Fault(
+        "one direction of bonds 5 % too tough",
+        "solver.fracture.directions.levelled",
+        result(_first_bond),
+        "toughness",
+    ),
+    Fault(
+        "a batch without one of its bonds",
+        "solver.fracture.breaking.next_batch",
+        result(lambda found: tuple(part[: max(1, len(part) - 1)] for part in found)),
+        "fracture",
+    ),
+    Fault(
+        "pins that do not turn",
+        "solver.problem.conditions.Support.pin",
+        _without_turning,
+        "supports",
     ),
     Fault(
         "w_c of a growing body + 2 %",

@@ -187,9 +187,11 @@ class _March:
         self.conduction, self.source = self._free(heat, self.warming)
         whole = np.zeros((c, count))
         physics = body.scene.physics
-        whole[:, first.active] = density * inertia(body.volumes, first.active, physics, c)
+        whole[:, first.active] = density * inertia(
+            body.storage("density"), first.active, physics, c
+        )
         self.mass = whole.ravel()[self.moving]
-        self.capacity = capacity * heat.volumes[self.warming]
+        self.capacity = capacity * heat.storage("heat_capacity")[self.warming]
         force = thermal_force(body.bonds, body.moduli, expansion)[self.moving]
         self.force = sparse.csr_array(force[:, self.warming])
         # What prescribed temperatures exert, all the time.
@@ -306,4 +308,5 @@ def adiabatic_temperature(
     body = state.discretisation
     force = thermal_force(body.bonds, body.moduli, expansion)
     drawn = force.T @ np.nan_to_num(state.unknowns).ravel()
-    return np.asarray(-reference * drawn / (heat_capacity * body.volumes))
+    thick = 1.0 if body.thickness is None else body.thickness
+    return np.asarray(-reference * drawn / (heat_capacity * thick * body.volumes))

@@ -15,6 +15,18 @@ specimen with its pins and anisotropy; that it runs straight; the direction for 
 between the crack and the fibres; energies. Shown: the specimen's 98 N and the paper's 96 N beside
 the peak, and ζ = π/2, where the paper's crack turns back to straight ahead after a short kink, as
 its grooved specimens did, and ours (without grooves) goes on along the fibres.
+
+Why the peak at ζ = 0 lies below the load at which finite elements reach G (99.95 N): 91.9, 93.1
+and 96.5 N at 0.75, 0.5 and 0.3 mm. Calibration is not the reason: with the drawn crack the
+lattice's own compliance gives 102.1 and 99.4 N at 0.75 and 0.5 mm (dC/da by static solves a cell
+apart; a tip is known to half a cell, 2.6 % at 0.5 mm). A drawn crack is *cut*: around its tip all
+bonds are whole. A grown one has broken bonds ahead of its tip, and only then does it resist with
+all of G: bonds begin to break at 0.47 G, and at the peak G (by the compliance at that moment) is
+1.00, 1.03 of its value while the crack has in effect grown by 1.5, 1.7 cells, a third of the
+horizon. Load falls by 9.4 % a millimetre of crack here. So the peak converges with the horizon
+(−8.1, −6.9, −3.4 %), and the release at the peak is judged beside it. Between one cell of growth
+and the next G goes up and down by some 8 % (lattice trapping). A grown crack has dissipated 0.9
+cells of G less than its length, for the same reason.
 """
 
 from __future__ import annotations
@@ -25,6 +37,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from cmverify.case import Case, Check, Curve, Level, LinePlot, Measurement, Method
 from cmverify.cases.common import warm
@@ -42,9 +55,7 @@ UNIT = 0.3e-3 * 5  # a spacing of 0.3 mm is unit/5
 SHIFT, RADIUS, OFFSET = -0.375 * WIDTH, 0.125 * WIDTH, 0.275 * WIDTH
 TIP = RATIO * WIDTH + SHIFT
 MOVE = 1e-3  # m: load factors are millimetres
-STEP = (
-    5e-4  # mm, our choice (a three-hundredth of the load at the start); twenty times that if coarse
-)
+STEP = 5e-4  # mm, our choice (a three-hundredth of the load at the start); ten times if coarse
 THEORY, PAPER = 98.0, 96.0  # N
 SOURCE = "scikit-fem on the same specimen (references: compact-tension-pins)"
 
@@ -81,7 +92,7 @@ class Specimen:
         return scene, pins
 
     def led(self, n: int, max_solves: int = 1_500) -> Led:
-        """The run until the force has fallen to a fifth of its peak (coarsest: to 0.8)."""
+        """The run until the force has fallen to a fifth of its peak (coarsest: to 0.85)."""
         from solver import Programme, Toughness
 
         scene, pins = self.scene(n)
@@ -90,7 +101,7 @@ class Specimen:
         )
         coarse = n <= 2
         programme = Programme(
-            stop=2.0, increment=STEP * (20 if coarse else 1), least_force=0.8 if coarse else 0.2
+            stop=2.0, increment=STEP * (10 if coarse else 1), least_force=0.85 if coarse else 0.2
         )
         return lead(scene, toughness, programme, no_fail=pins, max_solves=max_solves)
 
@@ -113,6 +124,34 @@ def critical_load() -> float:
     return float(THICKNESS * force * np.sqrt(ALONG / release))
 
 
+def released(stiffness: float, force: float) -> tuple[float, float]:
+    """Growth (m) and energy release over G along the fibres of a crack by compliance, ζ = 0.
+
+    Parameters
+    ----------
+    stiffness : float
+        Over that with the crack as it was drawn.
+    force : float
+        N.
+
+    Notes
+    -----
+    As experiments do it: finite elements with cracks of several lengths say which length has this
+    stiffness, and which force reaches G at that length.
+    """
+    from references.analytic import lekhnitskii
+    from references.provenance import load
+
+    stored = load("compact-tension-growth")
+    softer = np.log(stored["stiffness"][0] / stored["stiffness"])
+    growth = WIDTH * (stored["ratio"] - RATIO)
+    unit = [lekhnitskii.energy_release_rate(VOIGT, KI, 0.0) for KI in stored["KI"]]
+    critical = THICKNESS * stored["stiffness"] * np.sqrt(ALONG / np.array(unit))
+    grown = float(CubicSpline(softer, growth)(-np.log(stiffness)))
+    bearable = float(np.exp(CubicSpline(growth, np.log(critical))(grown)))
+    return grown, (force / bearable) ** 2
+
+
 def bond(specimen: Specimen, n: int) -> Measurement:
     """Pull the specimen apart at spacing unit/n."""
     led = specimen.led(n)
@@ -120,7 +159,11 @@ def bond(specimen: Specimen, n: int) -> Measurement:
     loaded = int(np.flatnonzero(h.load_factor > 0)[0])
     stiffness = float(h.force[loaded] / h.load_factor[loaded]) / MOVE**2
     force = THICKNESS / MOVE
-    peak = float((force * h.force).max())
+    top = int(np.argmax(h.force))
+    peak = float(force * h.force[top])
+    # On the way to the peak the body was as stiff as at it.
+    softened = float(h.force[top] / h.load_factor[top]) / MOVE**2 / stiffness
+    grown, release = released(softened, peak / np.sqrt(specimen.toughness))
     path = min(run.paths, key=lambda p: float(np.hypot(*(p.start - [TIP, 0.0]))))
     ahead = path.points - path.start
     # Direction over the first three millimetres, and up and down at ζ = 0.
@@ -137,6 +180,7 @@ def bond(specimen: Specimen, n: int) -> Measurement:
         quantities={
             "stiffness": abs(stiffness / reached[0] - 1),
             "peak": abs(peak / critical_load() - 1),
+            "release": abs(release - 1),
             "straying": float(np.abs(ahead[:, 1]).max()) / WIDTH,
             "beyond the fibres": max(0.0, direction - specimen.degrees, -direction),
             "undercut": max(0.0, 1 - cost / (specimen.toughness * ALONG)),
@@ -149,6 +193,7 @@ def bond(specimen: Specimen, n: int) -> Measurement:
             "stiffness, N/mm": round(1e-3 * THICKNESS * stiffness, 2),
             "peak, N": round(peak, 2),
             "finite elements' load, N": round(critical_load(), 2),
+            "grown at the peak, cells": round(grown * n / UNIT, 2),
             "direction, degrees": round(direction, 1),
             "cost per length, J/m²": round(cost, 0),
         },
@@ -190,12 +235,15 @@ CASES = (
         checks=(
             *(Check(m.name, "peak", {5: 0.05}, source=SOURCE)
               for m in (_STRAIGHT, _STRAIGHT_TOO)),
+            Check(_STRAIGHT.name, "release", {2: 0.15, 3: 0.1}, source="G at the peak by finite "
+                  "elements' compliance; a lattice traps a crack from cell to cell, by 8 %"),
             *(Check(m.name, "straying", {2: 0.03}, source="Sect. 3.1.2: almost collinear",
                     exact=True)
               for m in (_STRAIGHT, _STRAIGHT_TOO)),
             *(Check(m.name, "stiffness", {2: 0.06, 5: 0.03}, source=SOURCE) for m in _ALL),
-            *(Check(m.name, "beyond the fibres", {2: 5.0},
-                    source="the cheapest direction is the fibres', the largest G nearer to ahead")
+            *(Check(m.name, "beyond the fibres", {3: 9.5, 5: 5.7},
+                    source="the cheapest direction is the fibres', the largest G nearer to ahead; "
+                    "a path of 3 mm is known to a cell")
               for m in _TURNED),
             *(Check(m.name, "undercut", {3: 0.1}, source="no cut costs less than along the fibres; "
                     "paths are known to a cell at each end, too little at the coarsest",
@@ -208,6 +256,7 @@ CASES = (
             "stiffness": "relative error of the stiffness before the first break",
             "peak": "relative difference of the largest force from the load at which finite "
             "elements reach G along the fibres (ζ = 0)",
+            "release": "relative difference from G of what is released at the peak (ζ = 0)",
             "straying": "how far the path leaves the crack's line, over W",
             "beyond the fibres": "degrees by which the crack's first 3 mm leave the sector between "
             "straight ahead and the fibres",

@@ -51,7 +51,7 @@ class Kink:
     turn : float
         Angle of the crack (and of the material with it) to the lattice's axis 1, degrees.
     surface : "none", "volume" or "extrapolated"
-    toughness : "lattice" or "even"
+    toughness : "lattice", "even" or "directions"
         Whether all bonds share one w_c, or those along the lattice's rows are levelled.
     control : "following" or "fixed"
         With ``fixed`` the load never falls: it rises to the next event and stays until no bond is

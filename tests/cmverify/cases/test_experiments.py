@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cmverify.cases.experiments import CASES, bone, inclusion, notched_plate
+from cmverify.cases.experiments import CASES, bone, inclusion, notched_plate, pair
 from cmverify.cases.experiments.running import unmirrored
 from cmverify.report.stages import stages_figure
 from cmverify.run.results import Record, load, save
@@ -62,6 +62,25 @@ def test_the_bone_specimen_is_near_the_standard():
     for degrees in (0.0, 90.0):
         _, KI, KII = bone.reference(degrees)
         assert abs(KII) < 1e-3 * KI
+
+
+def test_compliance_says_how_far_a_crack_has_grown_and_what_is_released():
+    grown, release = bone.released(1.0, bone.critical_load())
+    assert abs(grown) < 1e-12
+    # Two meshes of the same specimen.
+    assert release == pytest.approx(1.0, abs=2e-3)
+    softer = bone.released(0.8, bone.critical_load())
+    assert 5e-4 < softer[0] < 2e-3
+    assert bone.released(0.8, 1.1 * bone.critical_load())[1] == pytest.approx(1.21 * softer[1])
+
+
+@pytest.mark.parametrize("offset", [False, True])
+def test_a_pair_of_cracks_breaks_alike_under_half_a_turn(offset):
+    run = pair.Pair(offset, m=3).led(4, max_solves=30).run
+    assert len(run.broken_bonds)
+    assert pair._turned(run) == 0
+    run.bonds.broken.add(np.flatnonzero(run.bonds.strengths.ravel())[:1], 99, 1.0, False)
+    assert pair._turned(run) == 1
 
 
 def test_every_method_of_an_experiment_is_judged():

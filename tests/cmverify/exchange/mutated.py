@@ -9,6 +9,34 @@ import tomllib
 from typing import Any
 
 WHOLE = {
+    "inclusions": """
+thickness = "0.2 + 0.01*x"
+[discretisation]
+spacing = 0.25
+m = 2
+[[region]]
+shape = "rectangle"
+width = 3.0
+height = 2.0
+[[region]]
+shape = "disc"
+radius = 0.4
+centre = [0.9, 0.0]
+operation = "subtract"
+[material]
+kind = "isotropic"
+E = 1.0
+nu = 0.2
+[[inclusion]]
+region = { shape = "rectangle", width = 1.0, height = 1.0, centre = [-0.75, 0.0] }
+material = { kind = "isotropic", E = 5.0, nu = 0.25 }
+[[support]]
+where = "x < -1.3"
+displacement = [0.0, 0.0]
+[[load]]
+kind = "body_force"
+value = [1.0, 0.0]
+""",
     "conduction": """
 [discretisation]
 spacing = 0.2

@@ -304,3 +304,61 @@ def test_formulas_in_time_do_what_functions_do(tmp_path):
 def test_times_that_make_no_sense(tmp_path, old, new, end, says):
     with pytest.raises(SceneFileError, match=says):
         scene_file.request(written(tmp_path, IN_TIME.replace(old, new) + end + "\n")).run()
+
+
+COMPOSITE = (EXAMPLES / "composite.toml").read_text()
+LINE = "[[0.005, -0.02], [0.005, -0.014], [0.007, -0.011]]"
+METAL = 'material = { kind = "conductivity", tensor = [[1, 0], [0, 1]] }'
+
+
+def test_regions_inclusions_thickness_and_polylines(tmp_path):
+    found = scene_file.request(EXAMPLES / "composite.toml")
+    scene = found.scene
+    assert scene.region.bounds == pytest.approx((-0.05, -0.02, 0.07, 0.02))
+    inside = scene.region.contains(np.array([0.05, 0.065, 0.0]), np.array([0.0, 0.0, 0.0]))
+    assert inside.tolist() == [False, True, True]
+    assert [i.thickness for i in scene.inclusions] == [None, 2e-3]
+    assert scene.inclusions[1].material is scene.material
+    assert scene.thickness == 5e-3
+    assert len(scene.cracks[0].segments) == 2
+    solution = found.run()
+    # Forces are those of a plate of that thickness; chords of the round end are a little shorter.
+    from solver.reactions import reaction
+
+    force = reaction(solution, lambda x, y: x < -0.047).force
+    assert force[0] == pytest.approx(-1e6 * 5e-3 * 2 * np.sqrt(0.02**2 - 0.01**2), rel=4e-3)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('operation = "subtract"', 'operation = "sub"', "operation = 'sub' is not one of"),
+        ("radius = 0.008", "radius = -1.0", "radius: must be positive"),
+        ("E = 70.0e9", "E = -70.0e9", "inclusion #1] material.E: must be positive"),
+        ("thickness = 2.0e-3", "", "give material or thickness"),
+        ("thickness = 2.0e-3", "thickness = -1.0", "inclusion #2] thickness: must be positive"),
+        ("thickness = 2.0e-3", METAL, "no inclusion of ConductivityTensor"),
+        ("centre = [-0.02, 0.0]", "centre = [9.0, 0.0]", "inclusion 1 holds no particle"),
+        ("thickness = 5.0e-3", "thickness = 0.0", "thickness must be positive"),
+        ("thickness = 5.0e-3", 'thickness = "x"', "numbers of it and its inclusions"),
+        (f"points = {LINE}", "points = [[0.0, 0.0]]", "two points or more"),
+        (f"points = {LINE}", "start = [0.0, 0.0]", "needs start and end, or points"),
+        (
+            "[0.007, -0.011]]",
+            "[0.007, -0.011]]\nstart = [0.0, 0.0]",
+            "either start and end or points",
+        ),
+        (LINE, "[[0.0, 0.0], [0.0, 0.0]]", "ends elsewhere"),
+    ],
+)
+def test_composites_that_make_no_sense(tmp_path, old, new, message):
+    assert old in COMPOSITE
+    with pytest.raises(SceneFileError, match=r"scene.toml:\d+: ") as caught:
+        scene_file.request(written(tmp_path, COMPOSITE.replace(old, new, 1)))
+    assert message in str(caught.value)
+
+
+def test_the_first_shape_begins_the_region(tmp_path):
+    text = SMALL.replace('shape = "disc"', 'shape = "disc"\noperation = "subtract"')
+    with pytest.raises(SceneFileError, match="nothing to subtract from"):
+        scene_file.read(written(tmp_path, text))
