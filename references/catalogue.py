@@ -17,6 +17,7 @@ from references.generators import (
     tetrachiral_free,
 )
 from references.generators_coupled import strained_plate
+from references.generators_dynamic import cracked_square_cools, free_plates, lamb_pulse
 from references.provenance import Reference
 
 _PAPER = "V. Diana, Anisotropic Continuum-Molecular Models, Arch. Comput. Methods Eng. (2022)"
@@ -66,6 +67,17 @@ def _intensities(geometry: str, ratios: list[float], citation: str) -> Reference
         spot={"materials": ["anisotropic"], "ratios": ratios[1:2]},
         axis="ratios",
     )
+
+
+def _plates() -> list[dict[str, Any]]:
+    laminas = ([2.0, 1.0, 0.5, 0.3], [4.0, 1.0, 0.45, 0.25])
+    return [
+        {"nu": 0.3},
+        {"nu": 0.45},
+        *({"lamina": it, "degrees": angle} for it in laminas for angle in (0.0, 30.0, 45.0)),
+        {"nu": 0.3, "feature": "hole"},
+        {"nu": 0.3, "feature": "crack"},
+    ]
 
 
 def catalogue() -> dict[str, Reference]:
@@ -121,6 +133,55 @@ def catalogue() -> dict[str, Reference]:
             _PAPER + ", Sect. 2.3.1 (tensor)",
             square_modes,
             {"material": "anisotropic", "count": 10},
+        ),
+        Reference(
+            "free-plates",
+            "Free unit squares: isotropic, orthotropic and turned, with a hole, with a crack",
+            "A. W. Leissa, NASA SP-160 (1969) (free plates); materials of this suite",
+            free_plates,
+            {
+                "numbers": list(range(10)),
+                "plates": _plates(),
+                "count": 13,
+                "hole": 0.2,
+                "crack": 0.4,
+                "elements": 40,
+            },
+            spot={"numbers": [3]},
+            axis="numbers",
+        ),
+        Reference(
+            "cracked-square-cools",
+            "Insulated square with an edge crack between its warm and its cold half (K)",
+            _PAPER + ", Sect. 4.3.1 (tensor)",
+            cracked_square_cools,
+            {
+                "conductivity": [[5.0, 2.0], [2.0, 1.0]],
+                "capacity": 2.0,
+                "tip": 0.1,
+                "duration": 0.05,
+                "grids": [20, 40, 80],
+                "size": 0.02,
+                "steps": 200,
+            },
+        ),
+        Reference(
+            "lamb-pulse",
+            "Edge of a half-plane under a strip of pressure, Ricker's wavelet (w μ / p λ_S)",
+            "H. Lamb, Phil. Trans. R. Soc. A 203 (1904) 1; J. D. Achenbach, Wave Propagation in"
+            " Elastic Solids (1973), ch. 7",
+            lamb_pulse,
+            {
+                "receivers": [2.0, 3.0],
+                "poisson": 0.2,
+                "half_width": 0.1,
+                "frequency": 1.0,
+                "delay": 1.2,
+                "end": 6.0,
+                "instants": 121,
+            },
+            spot={"receivers": [2.0]},
+            axis="receivers",
         ),
         *(
             Reference(

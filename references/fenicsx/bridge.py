@@ -279,6 +279,35 @@ def solve_elasticity(
     return run(problem, processes)["values"]
 
 
+def transient_conduction(
+    mesh: Mesh,
+    conductivity: ArrayLike,
+    capacity: float,
+    initial: Scalar,
+    duration: float,
+    steps: int,
+    order: int = 2,
+    processes: int = 1,
+) -> NDArray[np.float64]:
+    """As :func:`references.fem.transient.transient_conduction`, insulated, without a source.
+
+    Nodal temperatures (n,) at the end.
+    """
+    numbering = _number(mesh, order)
+    x, y = dirichlet_points(mesh, numbering.nodes, numbering.element_nodes).T
+    problem = {
+        **numbering.problem,
+        "physics": "transient",
+        "tensor": checked_conductivity(conductivity),
+        "prescribed": np.full((len(x), 1), np.nan),
+        "capacity": float(capacity),
+        "initial": evaluate(initial, x, y)[:, None],
+        "duration": float(duration),
+        "steps": int(steps),
+    }
+    return run(problem, processes)["values"][:, 0]
+
+
 def in_plane_frequencies(
     mesh: Mesh,
     voigt: ArrayLike,

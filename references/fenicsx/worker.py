@@ -10,7 +10,8 @@ triangle, by position, so that the doubled nodes of a slit are never confused.
 Keys of the problem (n nodes, c components: 1 in conduction, else 2):
 
 =========================  ==================  ====================================================
-``physics``                str                 ``conduction``, ``elasticity`` or ``modes``
+``physics``                str                 ``conduction``, ``elasticity``, ``modes`` or
+                                               ``transient``
 ``order``                  int                 of the elements, 1 or 2
 ``points``                 (v, 2)              vertices, m
 ``triangles``              (M, 3) int          vertices of each triangle
@@ -25,6 +26,10 @@ Keys of the problem (n nodes, c components: 1 in conduction, else 2):
 ``density``                float               kg/m³ (modes)
 ``count``                  int                 eigenvalues wanted, rigid motions included (modes)
 ``shift``                  float               below the lowest eigenvalue, rad²/s² (modes)
+``capacity``               float               J/(m³ K) (transient; the body is insulated)
+``initial``                (n, 1)              temperature at the start, K (transient)
+``duration``               float               s (transient)
+``steps``                  int                 equal ones of the trapezoidal rule (transient)
 =========================  ==================  ====================================================
 
 Keys of the answer: ``values`` (n, c), or ``eigenvalues`` (count,) ascending, rad²/s²; ``seconds``
@@ -176,7 +181,7 @@ def energy(problem, mesh, space):  # type: ignore[no-untyped-def]
     """The stiffness form of the problem's physics."""
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     tensor = fem.Constant(mesh, np.asarray(problem["tensor"], dtype=PETSc.ScalarType))
-    if str(problem["physics"]) == "conduction":
+    if str(problem["physics"]) in ("conduction", "transient"):
         return ufl.inner(ufl.dot(tensor, ufl.grad(u)), ufl.grad(v)) * ufl.dx
     return ufl.inner(ufl.dot(tensor, strain(u)), strain(v)) * ufl.dx
 
@@ -274,6 +279,40 @@ def solve_modes(problem, mesh, space, nodes):  # type: ignore[no-untyped-def]
     return {"eigenvalues": values[: int(problem["count"])]}
 
 
+def solve_transient(problem, mesh, space, nodes):  # type: ignore[no-untyped-def]
+    """Crank and Nicolson's rule after two implicit half steps: nodal temperatures at the end."""
+    u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
+    capacity = fem.Constant(mesh, PETSc.ScalarType(float(problem["capacity"])))
+    stiffness = petsc.assemble_matrix(fem.form(energy(problem, mesh, space)))
+    stiffness.assemble()
+    mass = petsc.assemble_matrix(fem.form(capacity * ufl.inner(u, v) * ufl.dx))
+    mass.assemble()
+    steps = int(problem["steps"])
+    step = float(problem["duration"]) / steps
+    system = mass.copy()
+    system.scale(1.0 / step)
+    system.axpy(0.5, stiffness)
+    solver = direct_solver(system)
+    field = fem.Function(space)
+    nodes.fill(field, problem["initial"])
+    now = system.createVecRight()
+    now.array[:] = field.x.array[: nodes.owned]
+    right, flow = now.duplicate(), now.duplicate()
+    for i in range(-1, steps):
+        # Twice M T/Δt alone: implicit Euler over half a step has the same matrix.
+        mass.mult(now, right)
+        right.scale(1.0 / step)
+        if i > 0:
+            stiffness.mult(now, flow)
+            right.axpy(-0.5, flow)
+        solver.solve(right, now)
+    field.x.array[: nodes.owned] = now.array
+    return {"values": nodes.gather(field, len(problem["nodes"]))}
+
+
+SOLVERS = {"modes": solve_modes, "transient": solve_transient}
+
+
 def main(problem_file, answer_file):  # type: ignore[no-untyped-def]
     """Read, solve, write."""
     with np.load(problem_file) as archive:
@@ -282,7 +321,7 @@ def main(problem_file, answer_file):  # type: ignore[no-untyped-def]
     mesh = distribute(problem["points"], problem["triangles"])
     space = function_space(mesh, int(problem["order"]), problem["prescribed"].shape[1])
     nodes = Nodes(mesh, space, problem["nodes"], problem["element_nodes"])
-    solve = solve_modes if str(problem["physics"]) == "modes" else solve_static
+    solve = SOLVERS.get(str(problem["physics"]), solve_static)
     answer = solve(problem, mesh, space, nodes)
     if MPI.COMM_WORLD.rank == 0:
         answer["seconds"] = np.array(time.perf_counter() - start)
