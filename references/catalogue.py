@@ -16,7 +16,7 @@ from references.generators import (
     tetrachiral_clamped,
     tetrachiral_free,
 )
-from references.generators_coupled import strained_plate
+from references.generators_coupled import cracked_leads, strained_plate
 from references.generators_dynamic import cracked_square_cools, free_plates, lamb_pulse
 from references.provenance import Reference
 
@@ -212,6 +212,23 @@ def catalogue() -> dict[str, Reference]:
                 "ratio": 0.36,
                 "elements": 20,
             },
+        ),
+        Reference(
+            "bone-leads",
+            "Compact specimen of bone between leads: drop over the length of a slit (V)",
+            _PAPER + ", Sect. 4.3.2; ASTM E399 (proportions)",
+            cracked_leads,
+            {
+                "width": 25.8e-3,
+                "resistivities": [170.0, 540.0],
+                "degrees": [0.0, 45.0, 90.0],
+                "tips": [-3, 0, 3, 6, 9, 12, 15],
+                "lead": [-24, 20, 3],
+                "probe": [-24, 1, 2],
+                "elements": 1,
+            },
+            spot={"degrees": [90.0]},
+            axis="degrees",
         ),
         _strained("isotropic", resistivities=[1.0, 1.0], angle=0.0, resistive=False, actual=False),
         _strained("bone", resistivities=[170.0, 540.0], angle=0.5, resistive=True, actual=True),

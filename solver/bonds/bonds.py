@@ -167,12 +167,21 @@ class Bonds:
 
     def scaled(self, factors: Factors) -> Bonds:
         """These bonds with a factor on each: every particle becomes special."""
-        result = copy(self)
-        result.__dict__.pop("column", None)
-        result.special = np.arange(self.lattice.count)
-        result.strengths = self.strengths_of(result.special) * factors.whole
+        result = self.times(np.arange(self.lattice.count), factors.whole)
         if self.ended is not None:
             result.ended = self.ended.scaled(factors)
+        return result
+
+    def times(self, particles: Indices, factors: Array) -> Bonds:
+        """These bonds with factors on those of some particles, (family size, particles).
+
+        Both ends of a bond must say the same.
+        """
+        result = copy(self)
+        result.__dict__.pop("column", None)
+        result.special = np.union1d(self.special, particles)
+        result.strengths = self.strengths_of(result.special)
+        result.strengths[:, np.searchsorted(result.special, particles)] *= factors
         return result
 
     def without_ends(self, particles: Indices) -> Bonds:

@@ -144,6 +144,7 @@ class Discretisation:
             )
             if bonds.ended is not None:
                 outline = bonds.ended.outline
+            bonds = leads.rimmed(scene, bonds, moduli)
             if scene.factors is not None:
                 bonds = bonds.scaled(scene.factors(bonds, moduli))
             if (thick := thickness.factors(scene, lattice, bonds)) is not None:

@@ -2,18 +2,36 @@
 
 A lead outside the body feeds nothing, two that touch are one, and a current into particles whose
 potential is prescribed is lost: none of these is what was meant, and each is refused by name.
+
+A lead on metal has one potential V up to its rim, wherever the rim lies between particles. A bond
+to one of its particles therefore ends at the rim, as bonds end at a surface (`solver.bonds.ended`)
+whose nodes are held: of its length |ξ| what lies outside is ℓ, and its energy is
+
+    ½ (ℓ/|ξ|) k g² α Δv²,  g = (V − φ)/ℓ      =  |ξ|/ℓ times   ½ k ((V − φ)/|ξ|)² α Δv².
+
+So its strength has the factor |ξ|/ℓ, for any treatment of surfaces, and for leads whose V is as yet
+unknown. A bond that passes through the metal carries nothing from end to end: each end has its
+own part, to V, which is added to another of its bonds to the lead. The lattice is then the one
+whose body has a hole with a held edge in the lead's place, to rounding. Held particles without this
+act like a lead that is larger by a share of the horizon.
 """
 
 from __future__ import annotations
 
 import numpy as np
+import shapely
 from scipy import ndimage
 
-from ..arrays import Mask
-from ..errors import SceneError
+from ..arrays import Array, Indices, Mask
+from ..bonds import Bonds
+from ..bonds.ended import SHORTEST
+from ..errors import NoOutlineError, SceneError
 from ..geometry import Lattice, Region, Where, select
+from ..material import Moduli
 from .description import Description
 
+# Share of a length within which two are equal.
+_TIE = 1e-9
 # Share of a lead's area that may lie outside the body: rounding, and chords of curved edges.
 _OUTSIDE = 0.01
 
@@ -55,6 +73,78 @@ def check(scene: Description, lattice: Lattice, prescribed: Mask) -> None:
                     f"the leads about {_middle(lattice, other)} and {_middle(lattice, mask)} "
                     f"touch: they need a cell between them"
                 )
+
+
+def rimmed(scene: Description, bonds: Bonds, moduli: Moduli) -> Bonds:
+    """Bonds that end at the rims of the leads on metal.
+
+    Leads that are given by a condition have no rim that could be known: theirs stay as they are.
+    """
+    for support in scene.supports:
+        region = support.electrode
+        if isinstance(region, Region):
+            try:
+                drawn = region.outline(scene.spacing / 16)
+            except NoOutlineError:
+                continue
+            bonds = _rimmed(bonds, moduli, region, drawn)
+    return bonds
+
+
+def _rimmed(bonds: Bonds, moduli: Moduli, region: Region, drawn: shapely.Geometry) -> Bonds:
+    """The same with one lead's rim."""
+    lattice, family = bonds.lattice, bonds.family
+    shift, half = np.array(lattice.shift), family.size // 2
+    metal = shapely.transform(drawn, lambda points: points - shift)
+    shapely.prepare(metal)
+    points, number = lattice.points, lattice.number()
+    rows, columns = lattice.rows_columns
+    inside = select(lattice, region)
+    reach = float(family.length.max()) * (1 + _TIE)
+    near = np.nonzero(~inside & (shapely.distance(shapely.points(points), metal) <= reach))[0]
+    if not len(near):
+        return bonds
+    shortest, tie = SHORTEST * lattice.spacing, _TIE * lattice.spacing
+    there = np.stack([number[rows[near] + dy, columns[near] + dx] for dx, dy in family.offsets])
+    exists = bonds.strengths_of(near) != 0
+    to_metal = exists & inside[there]
+    # What a whole bond conducts per volt, per volume of a particle.
+    conductance = family.weight * moduli.stiffness[0] / family.length**2
+    factors = np.ones(there.shape)
+    extra: list[tuple[Indices, Array]] = []
+    host = np.where(to_metal.any(axis=0), to_metal.argmax(axis=0), -1)
+    hosted = np.zeros(lattice.count, dtype=bool)
+    hosted[near[host >= 0]] = True
+    for o in range(family.size):
+        at = np.nonzero(exists[o])[0]
+        start, end = points[near[at]], points[there[o, at]]
+        outside = shapely.difference(shapely.linestrings(np.stack([start, end], axis=1)), metal)
+        # The part that begins at the particle ends where the metal begins; where rounding says
+        # that a bond to a particle on the rim does not meet it, there.
+        met = shapely.intersection(shapely.linestrings(np.stack([start, end], axis=1)), metal)
+        length = shapely.distance(shapely.points(start), met)
+        length = np.maximum(np.where(np.isnan(length), family.length[o], length), shortest)
+        ends = to_metal[o, at]
+        factors[o, at[ends]] = family.length[o] / length[ends]
+        lost = family.length[o] - shapely.length(outside)
+        through = ~ends & (lost > tie) & hosted[near[at]] & hosted[there[o, at]]
+        factors[o, at[through]] = 0.0
+        part = conductance[o] * family.length[o] / length[through]
+        extra.append((at[through], part))
+    for at, part in extra:
+        np.add.at(factors, (host[at], at), part / conductance[host[at]])
+    # The metal's ends of the same bonds.
+    column = np.full(lattice.count, -1)
+    metal_side = np.unique(there[to_metal])
+    both = np.concatenate([near, metal_side])
+    column[both] = np.arange(len(both))
+    whole = np.ones((family.size, len(both)))
+    whole[:, : len(near)] = factors
+    for o in range(family.size):
+        at = np.nonzero(to_metal[o])[0]
+        whole[(o + half) % family.size, column[there[o, at]]] = factors[o, at]
+    order = np.argsort(both)
+    return bonds.times(both[order], whole[:, order])
 
 
 def _inside(where: Where, scene: Description, lattice: Lattice) -> Mask:

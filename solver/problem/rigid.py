@@ -93,6 +93,7 @@ def unheld(
     points = bonds.lattice.points
     nodes, at = _held_nodes(bonds, labels)
     slaves = np.zeros_like(prescribed) if constraints is None else constraints.slaves
+    own = labels
     if constraints is not None:
         labels = constraints.joined(labels)
     # Parts that are wholly prescribed (or already set aside) have no unknowns to be free.
@@ -111,7 +112,10 @@ def unheld(
                 held = np.concatenate([held, nodes[:, at == part]], axis=1)
             motions = free_motions(positions, held, physics)
         else:
-            motions = _constrained_motions(bonds, members, prescribed, physics, constraints)
+            there = at == part if constraints is None else np.isin(at, own[members])
+            motions = _constrained_motions(
+                bonds, members, prescribed, physics, constraints, nodes * there
+            )
         if motions:
             size = f"{place} ({int(members.sum())} particles)"
             found.append((members, physics.unheld.format(place=size, motions=motions)))
@@ -203,16 +207,29 @@ def _names(seen: Array, physics: Physics) -> str:
 
 
 def _constrained_motions(
-    bonds: Bonds, members: Mask, prescribed: Mask, physics: Physics, constraints: Constraints
+    bonds: Bonds,
+    members: Mask,
+    prescribed: Mask,
+    physics: Physics,
+    constraints: Constraints,
+    nodes: Mask,
 ) -> str:
-    """As `free_motions`, of a part with particles whose unknowns follow from others."""
+    """As `free_motions`, of a part with particles whose unknowns follow from others.
+
+    `nodes` are the prescribed components of the outline's nodes of this part, (components, n).
+    """
     lattice, components = bonds.lattice, len(prescribed)
     where = lattice.points[members].mean(axis=0)
     motions = physics.motions(lattice.points - where)[:, :components]
     motions = motions * physics.scales(lattice.spacing, components)[:, None]
     motions[:, :, ~members] = 0.0
-    motions /= np.linalg.norm(motions.reshape(len(motions), -1), axis=1)[:, None, None]
+    size = np.linalg.norm(motions.reshape(len(motions), -1), axis=1)[:, None, None]
+    motions /= size
     left = constraints.held(motions)
     free = prescribed & ~constraints.slaves
     seen = np.where(free, motions, left)[:, prescribed]
+    if nodes.any():
+        there = physics.motions(_outline_nodes(bonds) - where)[:, :components]
+        there = there * physics.scales(lattice.spacing, components)[:, None] / size
+        seen = np.concatenate([seen, there[:, nodes]], axis=1)
     return _names(seen, physics)

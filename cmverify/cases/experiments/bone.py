@@ -91,8 +91,11 @@ class Specimen:
         )  # fmt: skip
         return scene, pins
 
-    def led(self, n: int, max_solves: int = 1_500) -> Led:
-        """The run until the force has fallen to a fifth of its peak (coarsest: to 0.85)."""
+    def led(self, n: int, max_solves: int = 1_500, **options: Any) -> Led:
+        """The run until the force has fallen to a fifth of its peak (coarsest: to 0.85).
+
+        Further options, such as monitors, are those of `solver.fracture.grow`.
+        """
         from solver import Programme, Toughness
 
         scene, pins = self.scene(n)
@@ -103,7 +106,7 @@ class Specimen:
         programme = Programme(
             stop=2.0, increment=STEP * (10 if coarse else 1), least_force=0.85 if coarse else 0.2
         )
-        return lead(scene, toughness, programme, no_fail=pins, max_solves=max_solves)
+        return lead(scene, toughness, programme, no_fail=pins, max_solves=max_solves, **options)
 
 
 def reference(degrees: float) -> tuple[float, float, float]:

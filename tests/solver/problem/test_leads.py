@@ -12,6 +12,7 @@ from solver import (
     SceneError,
     Support,
     disc,
+    polygon,
     recovery,
     rectangle,
 )
@@ -47,6 +48,66 @@ def test_a_lead_of_metal_has_one_potential_and_makes_the_heat_that_it_is_fed():
     elastic = Scene(BODY, 0.1, ElasticTensor.isotropic(1.0, 0.2), [still], m=2).solve()
     with pytest.raises(SceneError, match="conducts nothing"):
         supply(elastic, WEST)
+
+
+@pytest.mark.parametrize(
+    "metal",
+    [
+        rectangle(0.2, 0.2, (0.5, 0.0)),
+        rectangle(0.33, 0.11, (0.415, 0.075)),
+        disc(0.17, (0.513, 0.03)),
+        polygon([(0.3, -0.2), (0.62, -0.13), (0.44, 0.21)]),
+    ],
+    ids=["square", "cut", "disc", "triangle"],
+)
+def test_a_lead_is_a_hole_with_a_held_edge(metal):
+    """Bonds end at its rim; those that pass through it end there, too."""
+    ends = [Support.where(lambda x, y: np.abs(x) > 0.95, potential=lambda x, y: 0.3 * y)]
+    lead = scene(supports=[*ends, Support.lead(metal, potential=1.0)], surface="extrapolated")
+    x0, y0, x1, y1 = metal.bounds
+
+    def rim(x, y):
+        return (x > x0 - 0.01) & (x < x1 + 0.01) & (y > y0 - 0.01) & (y < y1 + 0.01)
+
+    hole = Scene(BODY - metal, 0.05, BONE, [*ends, Support.edge(rim, potential=1.0)], m=3,
+                 surface="extrapolated", phase=(0.0, 0.0))  # fmt: skip
+    found, wanted = (s.solve(tolerance=1e-13) for s in (lead, hole))
+    outside = ~metal.contains(*found.points.T)
+    assert found.points[outside] == pytest.approx(wanted.points, abs=1e-12)
+    # Of a round rim the hole's edge has longer chords: a hundredth of a cell apart.
+    slack = 1e-2 if isinstance(metal, type(disc(1.0))) else 1e-10
+    assert np.abs(found.potential[outside] - wanted.potential).max() < slack
+
+
+def test_particles_on_the_rim_change_nothing():
+    """Whether rows of particles lie on the rim or just beside it."""
+    found = []
+    for beside in (0.0, 1e-4):
+        metal = rectangle(0.33, 0.11, (0.41 + beside, 0.07 + beside))
+        found.append(scene(supports=[GROUND, Support.lead(metal, 1.0)]).solve(tolerance=1e-10))
+    first, second = (supply(solution, WEST) for solution in found)
+    assert first == pytest.approx(second, rel=1e-2)
+
+
+@pytest.mark.parametrize("floating", [False, True])
+def test_a_round_lead_feeds_what_the_ring_says(floating):
+    """2π σ V/ln(R/r), at nearly second order, held or floating."""
+    errors = []
+    for n in (10, 20, 40):
+        metal, wanted = disc(0.3), 2 * np.pi / np.log(1 / 0.3)
+        ring = Scene(
+            disc(1.0), 1.0 / n, ElectricConductivityTensor.isotropic(1.0),
+            [Support.edge(lambda x, y: np.hypot(x, y) > 0.9, potential=0.0),
+             Support.lead(metal) if floating else Support.lead(metal, 1.0)],
+            [Load.lead(wanted, metal)] if floating else [], m=3, surface="extrapolated",
+        ).solve(tolerance=1e-11)  # fmt: skip
+        if floating:
+            errors.append(abs(ring.potential[metal.contains(*ring.points.T)].mean() - 1))
+        else:
+            errors.append(abs(supply(ring, metal) / wanted - 1))
+    assert errors[0] < 0.02
+    assert errors[2] < 2e-3
+    assert 1.5 < np.log2(errors[0] / errors[2]) / 2 < 2.3
 
 
 @pytest.mark.parametrize(
