@@ -245,7 +245,8 @@ def grown(conductor: Conductor, n: int) -> Measurement:
 
 def _stages(points: Array, spacing: float, maps: list[tuple[float, float, Array]]) -> Stages:
     """Four of the potential maps, over the largest potential before the crack grew."""
-    most = float(np.nanmax(np.abs(maps[0][2])))
+    known = maps[0][2][np.isfinite(maps[0][2])]
+    most = float(np.abs(known).max())
     chosen = dict.fromkeys(np.linspace(0, len(maps) - 1, 4).round().astype(int).tolist())
     return Stages(
         "potential over the first map's largest",
