@@ -29,7 +29,9 @@ def test_options_are_the_keywords_of_the_function():
 def test_who_knows_time_and_who_tells_how_far_it_is():
     known = analyses()
     assert {name for name, one in known.items() if one.timed} == {"transient", "waves"}
-    assert {name for name, one in known.items() if one.reports} == set(known) - {"solve"}
+    # A solve, and the three of a strained conductor, are over before a bar would help.
+    still = {"solve", "piezoresistive"}
+    assert {name for name, one in known.items() if one.reports} == set(known) - still
 
 
 def test_an_analysis_runs_on_a_scene():
