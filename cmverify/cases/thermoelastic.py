@@ -7,6 +7,7 @@ hottest at its centre has the stress of the closed form.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -45,6 +46,20 @@ def random_solid(seed: int) -> tuple[Any, Any]:
     return ElasticTensor(voigt), ExpansionTensor([[a, c], [c, b]])
 
 
+def load_of_bonds(solution: Any) -> float:
+    """Energy of the most loaded bond, as fracture sees it, over that of its total strain."""
+    from solver.fracture.breaking import Breakable
+
+    # Random solids have bonds of either sign, which fracture refuses.
+    body = replace(solution.discretisation, moduli=solution.discretisation.moduli.absolute())
+    tough = np.ones(body.family.size)
+    mechanical, total = (
+        float(Breakable(b, tough, tension_only=False).utilisation(solution.unknowns).max())
+        for b in (body, replace(body, eigenstrain=None))
+    )
+    return mechanical / total
+
+
 def expansion(scale: float, n: int) -> Measurement:
     """Stress of free bodies, over that of clamped ones; and that of clamped ones.
 
@@ -52,7 +67,8 @@ def expansion(scale: float, n: int) -> Measurement:
     """
     from solver import Load, Scene, Support, recovery, rectangle
 
-    found: dict[str, list[float]] = {"uniform": [], "linear": [], "clamped": [], "strain": []}
+    names = "uniform", "linear", "clamped", "strain", "loaded"
+    found: dict[str, list[float]] = {name: [] for name in names}
     common: dict[str, Any] = {"spacing": 1.0 / n, "m": M}
     for seed, surface in enumerate(TREATMENTS):
         solid, expands = random_solid(seed)
@@ -68,6 +84,8 @@ def expansion(scale: float, n: int) -> Measurement:
                 **common,
             ).solve(tolerance=1e-12)
             found[name].append(float(np.abs(recovery.stress(solution)).max()) / size)
+            if surface != "extrapolated":
+                found["loaded"].append(load_of_bonds(solution))
             if name == "uniform":
                 gradient = recovery.displacement_gradient(solution)
                 strain = 0.5 * (gradient + gradient.swapaxes(1, 2))
@@ -151,13 +169,14 @@ CASES = (
                 source="rounding: no bond is strained beyond what expands it",
                 exact=True,
             )
-            for quantity in ("uniform", "linear", "clamped", "strain")
+            for quantity in ("uniform", "linear", "clamped", "strain", "loaded")
         ),
         quantities={
             "uniform": "largest stress under a uniform temperature, all surfaces, over |C A|",
             "linear": "the same under a linear temperature",
             "clamped": "stress of a clamped body",
             "strain": "strain of free bodies",
+            "loaded": "what loads a bond of a free body to break, over what its total strain would",
         },
         primary="uniform",
         featured="bond/lattice",
@@ -225,6 +244,12 @@ FAULTS = (
     Fault("thermal strain of ended bonds + 1 %", f"{E}.of_ended", scaled(1.01), "thermal"),
     Fault("thermal forces at particles + 1 %", f"{E}.load", scaled(1.01), "thermal"),
     Fault("thermal forces at surfaces + 1 %", f"{E}.surface_load", scaled(1.01), "thermal"),
+    Fault(
+        "total strain breaks bonds",
+        "solver.fracture.breaking._free_strains",
+        result(lambda free: free[:, :, :0]),
+        "thermal",
+    ),
     Fault(
         "expansion along 1 and 2 swapped",
         "solver.material.expansion.ExpansionTensor.voigt",

@@ -5,7 +5,8 @@ origin p, and p's neighbour along o is `steps[o]` cells further on the flattened
 Segments are runs of neighbouring particles of one grid row, (first cell, length, first particle).
 Every entry is written by one thread, so results do not depend on the number of threads.
 
-Polar bonds, which store ½ |ξ| k_b χ² too, have kernels of their own: the others pay nothing for it.
+Polar bonds, which store ½ |ξ| k_b χ² too, and bonds that temperatures strain have kernels of their
+own: the others pay nothing for it. Only mechanical strain stores energy.
 """
 
 from __future__ import annotations
@@ -82,9 +83,18 @@ def bond_work(grid, other, segments, steps, geometry, factors, out):
 
 
 @kernel(uses=(strains.__file__,), **_OPTIONS)
-def polar_energies(grid, segments, steps, geometry, factors, tension, out):
-    """As `bond_energies`, with c χ² of a sixth column of `geometry`, (h, 6)."""
+def rich_energies(grid, free, segments, steps, geometry, factors, tension, out):
+    """As `bond_energies`, with c χ² and less the strains that cost nothing.
+
+    Parameters
+    ----------
+    free : float64 (2, h, N), or (2, h, 0) without
+        |ξ| times the stretch and the shear that a temperature causes by itself.
+    geometry : float64 (h, 6)
+        As there, and c.
+    """
     ux, uy, th = grid[0], grid[1], grid[2]
+    warm = free.shape[2] > 0
     for s in nb.prange(segments.shape[0]):
         cell, size, first = segments[s, 0], segments[s, 1], segments[s, 2]
         for o in range(steps.size):
@@ -96,16 +106,23 @@ def polar_energies(grid, segments, steps, geometry, factors, tension, out):
                 dx, dy = ux[ahead + j] - ux[cell + j], uy[ahead + j] - uy[cell + j]
                 axial = stretched(nx, ny, dx, dy)
                 shear = sheared(nx, ny, dx, dy, half * (th[ahead + j] + th[cell + j]))
+                if warm:
+                    axial -= free[0, o, first + j]
+                    shear -= free[1, o, first + j]
                 bend = bent(th[ahead + j] - th[cell + j])
                 value = a * axial * axial + b * shear * shear + c * bend * bend
                 row[first + j] = 0.0 if tension and axial < 0.0 else factor[first + j] * value
 
 
 @kernel(uses=(strains.__file__,), **_OPTIONS)
-def polar_work(grid, other, segments, steps, geometry, factors, out):
-    """As `bond_work`, with c χ χ' of a sixth column of `geometry`, (h, 6)."""
+def rich_work(grid, free, other, more, segments, steps, geometry, factors, out):
+    """As `bond_work`, with c χ χ' and less what costs nothing of both fields.
+
+    `free` as for `rich_energies` belongs to the first field, `more` to the second.
+    """
     ux, uy, th = grid[0], grid[1], grid[2]
     vx, vy, ph = other[0], other[1], other[2]
+    warm, both = free.shape[2] > 0, more.shape[2] > 0
     for s in nb.prange(segments.shape[0]):
         cell, size, first = segments[s, 0], segments[s, 1], segments[s, 2]
         total = 0.0
@@ -119,7 +136,13 @@ def polar_work(grid, other, segments, steps, geometry, factors, out):
                 ex, ey = vx[ahead + j] - vx[cell + j], vy[ahead + j] - vy[cell + j]
                 shear = sheared(nx, ny, dx, dy, half * (th[ahead + j] + th[cell + j]))
                 sheer = sheared(nx, ny, ex, ey, half * (ph[ahead + j] + ph[cell + j]))
-                axial = stretched(nx, ny, dx, dy) * stretched(nx, ny, ex, ey)
+                axial, along = stretched(nx, ny, dx, dy), stretched(nx, ny, ex, ey)
+                if warm:
+                    axial -= free[0, o, first + j]
+                    shear -= free[1, o, first + j]
+                if both:
+                    along -= more[0, o, first + j]
+                    sheer -= more[1, o, first + j]
                 bend = bent(th[ahead + j] - th[cell + j]) * bent(ph[ahead + j] - ph[cell + j])
-                total += factor[first + j] * (a * axial + b * shear * sheer + c * bend)
+                total += factor[first + j] * (a * axial * along + b * shear * sheer + c * bend)
         out[s] = total

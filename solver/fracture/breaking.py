@@ -133,11 +133,15 @@ class Breakable:
         shear = 0.5 * moduli.shear[:half] / family.length[:half]
         arm = 0.5 * family.length[:half] / family.spacing
         terms = [family.normal[:half], arm, axial, shear]
-        #: Whether bonds store energy of bending, too.
-        self.polar = isinstance(moduli, PolarModuli)
-        if isinstance(moduli, PolarModuli):
-            # The kernels know rotations as θ Δx.
-            bending = 0.5 * moduli.bending[:half] / family.length[:half]
+        #: |ξ| times the strains that temperatures cause by themselves at unit load, (2, half, N).
+        self.free: Array = _free_strains(discretisation)
+        #: Whether bonds store energy of bending, or temperatures strain them.
+        self.rich = isinstance(moduli, PolarModuli) or self.free.shape[2] > 0
+        if self.rich:
+            bending = np.zeros(half)
+            if isinstance(moduli, PolarModuli):
+                # The kernels know rotations as θ Δx.
+                bending = 0.5 * moduli.bending[:half] / family.length[:half]
             terms.append(bending / family.spacing**2)
         geometry = np.column_stack(terms)
         stored = geometry.copy()
@@ -209,16 +213,11 @@ class Breakable:
             Overwritten by the next call.
         """
         grid = self._grid(0, unknowns)
-        energies = bond_kernels.polar_energies if self.polar else bond_kernels.bond_energies
-        energies(
-            grid,
-            self._segments,
-            self._steps,
-            self._load,
-            self.strengths,
-            self.tension_only,
-            self._out,
-        )
+        rest = self._load, self.strengths, self.tension_only, self._out
+        if self.rich:
+            bond_kernels.rich_energies(grid, self.free, self._segments, self._steps, *rest)
+        else:
+            bond_kernels.bond_energies(grid, self._segments, self._steps, *rest)
         self._out[self.kept] = 0.0
         if self.thickness.size > 1 or self.thickness.ravel()[0] != 1.0:
             self._out /= self.thickness
@@ -227,13 +226,18 @@ class Breakable:
     def stored(self, unknowns: Array, others: Array | None = None) -> float:
         """Energy of all bonds between particles, J per unit thickness.
 
-        With `others`, half the mutual energy of the two fields.
+        With `others`, half the mutual energy of the two fields: of the mechanical strain of the
+        first and all of the second's.
         """
         grid = self._grid(0, unknowns)
         other = grid if others is None else self._grid(1, others)
         out = np.empty(len(self._segments))
-        work = bond_kernels.polar_work if self.polar else bond_kernels.bond_work
-        work(grid, other, self._segments, self._steps, self._stored, self.strengths, out)
+        rest = self._segments, self._steps, self._stored, self.strengths, out
+        if self.rich:
+            more = self.free if others is None else self.free[:, :, :0]
+            bond_kernels.rich_work(grid, self.free, other, more, *rest)
+        else:
+            bond_kernels.bond_work(grid, other, *rest)
         return float(out.sum())
 
     def energy_of(self, unknowns: Array, bonds: Indices) -> Array:
@@ -243,8 +247,10 @@ class Breakable:
         field = np.zeros((3, self.lattice.count))
         field[: len(unknowns)] = np.nan_to_num(unknowns)
         turn = half * (field[2, q] + field[2, p])
-        strains = ("s", "γ", "χ") if self.polar else ("s", "γ")
+        strains = ("s", "γ", "χ")[: len(stored)]
         found = elongations(strains, np.stack([nx, ny]), field[:, q] - field[:, p], turn)
+        if self.free.shape[2]:
+            found[:2] -= self.free[:, o, p]
         return self.strengths.ravel()[bonds] * np.einsum("ak,ak->k", np.stack(stored), found**2)
 
     def cost_of(self, bonds: Indices) -> Array:
@@ -283,6 +289,18 @@ class Breakable:
             starts = np.union1d(particles, back[back >= 0])
             found.append(o * count + starts[self.strengths[o, starts] != 0])
         return np.concatenate(found)
+
+
+def _free_strains(body: Discretisation) -> Array:
+    """|ξ| times stretch and shear without stress of every bond, (2, half, N), or (2, half, 0)."""
+    family, half = body.family, body.family.size // 2
+    if body.eigenstrain is None:
+        return np.zeros((2, half, 0))
+    found = np.zeros((2, half, body.lattice.count))
+    for o in range(half):
+        strains = body.eigenstrain.of_offset(o)[:2]
+        found[: len(strains), o] = family.length[o] * strains
+    return found
 
 
 def next_batch(utilisation: Array, least: float, size: int) -> tuple[Indices, Array]:

@@ -39,6 +39,7 @@ def fingerprint(run: Growth) -> str:
         "load": start.load,
         "nodal": start.nodal_load,
         "surface": start.scene.surface,
+        "free": bonds.free,
         "whole": bonds.whole,
         "critical": bonds.critical,
         "kept": bonds.kept,

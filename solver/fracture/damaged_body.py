@@ -22,6 +22,7 @@ from ..bonds.parting import Pieces, part
 from ..errors import ConvergenceError, MechanismError
 from ..linear import Border, Bordered, BorderedInverse, Task, TwoLevel, method
 from ..operators import BondOperator
+from ..operators.eigenstrain import Eigenstrain
 from ..problem import Discretisation, mechanisms
 from ..problem.bordering import border
 from ..problem.rigid import unheld
@@ -98,6 +99,8 @@ class Equilibrium:
         self._operator: BondOperator = discretisation.operator
         # How many of the broken bonds these two know.
         self._followed, self._resuming = 0, False
+        # The load with temperatures, and how many broken bonds it knows.
+        self._warm: tuple[int, Array] | None = None
         self.tolerance, self.max_iterations = tolerance, max_iterations
         self.kind = discretisation.stability.kind
         self.aside = np.zeros(discretisation.lattice.count, dtype=bool)
@@ -157,10 +160,30 @@ class Equilibrium:
             bonds=self.bonds,
             operator=self.operator,
             values=values,
-            load=self.sound.load * factor,
+            load=self.load * factor,
+            eigenstrain=self._eigenstrain(factor),
             nodal_load=None if self.nodal_load is None else self.nodal_load * factor,
             prescribed=self.prescribed,
         )
+
+    @property
+    def load(self) -> Array:
+        """Unit load of the particles, with what temperatures exert through the bonds left."""
+        if self.sound.acting is None:
+            return self.sound.load
+        self.follow()
+        if self._warm is None or self._warm[0] != self._followed:
+            warm = self._eigenstrain(1.0)
+            assert warm is not None
+            self._warm = self._followed, np.asarray(self.sound.acting + warm.load())
+        return self._warm[1]
+
+    def _eigenstrain(self, factor: float) -> Eigenstrain | None:
+        """What temperatures strain under `factor` times the load."""
+        warm = self.sound.eigenstrain
+        if warm is None:
+            return None
+        return replace(warm, bonds=self.bonds, particles=factor * warm.particles)
 
     def solution(self, factor: float) -> Solution:
         """The last equilibrium under `factor` times the load, for recovery."""
@@ -255,7 +278,7 @@ class Equilibrium:
             self._bonds = self._bonds.breaking(offsets, origins)
             if self._bonds.ended is not None and not broken.records["dropped"][begin]:
                 self._part(offsets, origins)
-            if touched[origins].any() or touched[ends].any():
+            if touched[origins].any() or touched[ends].any() or self.sound.acting is not None:
                 self.rhs = self.border = None
         self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
 
@@ -311,7 +334,8 @@ class Equilibrium:
         unknowns = self.unknowns
         self.aside[particles] = True
         self._bonds = self.bonds.without_ends(particles)
-        if self.sound.load[:, self.aside].any() or self._unloaded():
+        acting = self.sound.load if self.sound.acting is None else self.sound.acting
+        if acting[:, self.aside].any() or self._unloaded():
             raise MechanismError("a part on which a load acts has come loose")
         if self.prescribed.all():
             raise MechanismError("all of the body that was free has come loose")

@@ -63,10 +63,10 @@ class Growth(Result):
         max_iterations: int,
         monitors: Mapping[str, Callable[[Growth], float]],
     ) -> None:
-        if any(load.strain is not None for load in scene.loads):
+        if scene.surface == "extrapolated" and any(load.strain is not None for load in scene.loads):
             raise SceneError(
-                "temperatures (Load.temperature) are known to statics only: bonds do not break "
-                "under them yet"
+                "bonds that end at the surface cannot be broken under temperatures yet: use "
+                "surface='volume' or 'none'"
             )
         start = scene.discretise(sharp_tips=False, constrained=True)
         self.scene, self.programme, self.reason = scene, programme, ""

@@ -20,7 +20,7 @@ class Ledger:
     Attributes
     ----------
     work : float
-        Of supports and loads.
+        Of supports and loads, and of what temperatures expand.
     dissipated : float
         w_c α Λ Δv Δv of all broken bonds.
     excess : float
@@ -44,7 +44,8 @@ class Ledger:
     def _load_work(self) -> float:
         """Σ f·u Δv of the loads at unit load, prescribed unknowns left out."""
         start = self.body.sound
-        free = np.where(self.body.prescribed, 0.0, start.load)
+        acting = start.load if start.acting is None else start.acting
+        free = np.where(self.body.prescribed, 0.0, acting)
         found = float((free * np.nan_to_num(self.body.unknowns)).sum()) * start.family.cell_area
         return found + self.body.surface_load_work()
 
@@ -64,7 +65,18 @@ class Ledger:
 
     def move(self, before: float, after: float) -> None:
         """The load factor changes while no bond breaks."""
-        self.work += 0.5 * (after**2 - before**2) * (self._support_work() + self.deflection)
+        done = self._support_work() + self.deflection
+        if self.bonds.free.shape[2]:
+            done += self._heat_work()
+        self.work += 0.5 * (after**2 - before**2) * done
+
+    def _heat_work(self) -> float:
+        """−Σ L k (ε − e)·e Δv Δv: what expansion does against the bonds at unit load.
+
+        Supports and loads do Σ L k (ε − e)·ε, and both together twice what is stored.
+        """
+        whole = 2.0 * self._stored()
+        return whole - 2.0 * self.bonds.stored(self.body.unknowns, self.body.unknowns)
 
     def broken(self, bonds: Indices, load_factor: float) -> None:
         """Bonds are about to break under this load factor."""

@@ -59,6 +59,8 @@ class Discretisation:
         Of rigid pins and tied unknowns; slaves are among the prescribed.
     eigenstrain : Eigenstrain, optional
         Of temperatures; the loads hold what it exerts.
+    acting : ndarray, shape (components, N), optional
+        `load` without what temperatures exert, where there are any.
     """
 
     scene: Description
@@ -75,6 +77,7 @@ class Discretisation:
     seconds: float
     constraints: Constraints | None = None
     eigenstrain: Eigenstrain | None = None
+    acting: Array | None = None
 
     @classmethod
     def of(
@@ -112,7 +115,8 @@ class Discretisation:
             )
         if not constrained and any(load.strain is not None for load in scene.loads):
             raise SceneError(
-                "temperatures that strain a body (Load.temperature) are known to statics only"
+                "temperatures that strain a body (Load.temperature) are known to statics and "
+                "quasi-static fracture only"
             )
         lattice = Lattice(scene.region, scene.spacing, family.reach, scene.phase)
         cracks = _moved(scene.cracks, lattice)
@@ -183,6 +187,7 @@ class Discretisation:
                 "a load on an edge acts on a part that nothing holds: hold it, or leave it out of "
                 "the load (where=...)"
             )
+        acting = load.copy() if any(item.strain is not None for item in scene.loads) else None
         eigenstrain = _eigenstrain(scene, lattice, operator, load, nodal_load)
         seconds = perf_counter() - begun
         return cls(
@@ -200,6 +205,7 @@ class Discretisation:
             seconds,
             constraints,
             eigenstrain,
+            acting,
         )
 
     @property

@@ -27,7 +27,7 @@ def test_the_heated_disc(scale, seen):
     assert ({"displacement", "stress"} <= found) == seen
 
 
-@pytest.mark.parametrize("fault", FAULTS[:4], ids=lambda fault: fault.name)
+@pytest.mark.parametrize("fault", FAULTS[:5], ids=lambda fault: fault.name)
 def test_faults_of_thermal_forces_are_seen(fault):
     with applied({fault.target: fault.change}):
         assert failed(EXPANSION, thermoelastic.expansion(1.0, CELLS), CELLS)

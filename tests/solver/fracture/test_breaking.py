@@ -9,7 +9,9 @@ from solver import (
     ConductivityTensor,
     Crack,
     ElasticTensor,
+    ExpansionTensor,
     Family,
+    Load,
     PolarTensor,
     Scene,
     SceneError,
@@ -80,6 +82,41 @@ def test_what_a_polar_bond_is_loaded_by():
     assert more.max() > 0.1
     axial = [Breakable(p, tough, criterion="axial") for p in (parts, plain)]
     np.testing.assert_array_equal(*(bonds.utilisation(field) for bonds in axial))
+
+
+@few
+@given(
+    st.integers(0, 10**6),
+    st.sampled_from(["none", "volume"]),
+    st.sampled_from([1.3, lambda x, y: 0.3 + x - 2 * y]),
+)
+def test_only_mechanical_strain_loads_bonds(seed, surface, change):
+    """Any field beyond free expansion loads bonds as it does alone, whatever the temperature."""
+    rng = np.random.default_rng(seed)
+    a, b, c = rng.normal(size=3)
+    free = [
+        Support.where(lambda x, y: (x < 1) & (y < 1), displacement=(0.0, 0.0)),
+        Support.where(lambda x, y: (abs(x - 4.5) < 0.1) & (y < 1), u2=0.0),
+    ]
+    hot = scene(
+        supports=free,
+        surface=surface,
+        cracks=[],
+        loads=[Load.temperature(change, ExpansionTensor([[a, c], [c, b]]))],
+    )
+    expanded = hot.solve(tolerance=1e-13).unknowns
+    parts = hot.discretise(constrained=True)
+    plain = scene(supports=free, surface=surface, cracks=[]).discretise()
+    tough = rng.uniform(0.5, 2.0, parts.family.size // 2)
+    warm, cold = (Breakable(p, np.tile(tough, 2), tension_only=False) for p in (parts, plain))
+    beyond = random_field(parts, seed)
+    wanted = cold.utilisation(beyond).copy()
+    found = warm.utilisation(expanded + beyond)
+    np.testing.assert_allclose(found, wanted, atol=1e-9 * wanted.max())
+    assert warm.stored(expanded + beyond) == pytest.approx(cold.stored(beyond), rel=1e-9)
+    # Expansion alone loads nothing, however large, and its total strain would have.
+    assert warm.utilisation(expanded).max() < 1e-18 * max(1.0, cold.utilisation(expanded).max())
+    assert cold.utilisation(expanded).max() > 1e-3
 
 
 def test_stored_energy_in_a_homogeneous_strain_is_the_continuums():

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 
 import numba
 import numpy as np
@@ -14,12 +15,14 @@ from hypothesis import strategies as st
 from solver import (
     Crack,
     ElasticTensor,
+    ExpansionTensor,
     Load,
     PolarTensor,
     Scene,
     SceneError,
     Support,
     fracture,
+    recovery,
     rectangle,
 )
 from solver.bonds import Bonds
@@ -177,6 +180,51 @@ def test_energies_balance_with_bonds_that_end_at_the_surface(material):
     own = run.body.surface_energy()
     # The balance would see one per cent of what is stored in bonds that end.
     assert 0.01 * own > 1e-6 * h.stored[-1] / run.load_factor**2
+
+
+@pytest.mark.parametrize("surface", ["none", "volume"])
+@pytest.mark.parametrize("material", [SOFT, PolarTensor(SOFT, 0.5 * np.eye(2))])
+def test_energies_balance_under_temperatures(material, surface):
+    """Held ends and a body that shrinks: what cooling does is work, what breaks is booked."""
+    held = Support.where(lambda x, y: (x < 1) | (x > 13), displacement=0.0, rotation=0.0)
+    cold = Load.temperature(lambda x, y: -1.0 + 0.05 * y, ExpansionTensor([[1.0, 0.2], [0.2, 0.5]]))
+    scene = Scene(
+        block(14, 9), 1.0, material, [held], [cold, Load.body_force((0.0, 1e-3))], m=2,
+        surface=surface, cracks=[Crack((6.7, -1.0), (6.7, 2.2))], loose="drop",
+    )  # fmt: skip
+    run = fracture.grow(scene, 1.0, Programme(stop=1e6), max_solves=20, tolerance=1e-11)
+    h = run.history
+    assert h.dissipated[-1] > 0
+    assert np.abs(h.imbalance).max() <= 1e-8 * h.work.max()
+    assert 0.01 * h.dissipated[-1] > 1e-6 * h.work.max()
+    # What a solve of the broken body says of its stress is what the run says, which solves
+    # coarsely within an avalanche.
+    solution = run.solution
+    broken = replace(scene, broken=lambda lattice, family: run.broken).solve(tolerance=1e-11)
+    kept = ~run.loose
+    np.testing.assert_allclose(
+        run.load_factor * recovery.stress(broken)[kept],
+        recovery.stress(solution)[kept],
+        atol=1e-4 * np.abs(recovery.stress(solution)[kept]).max(),
+    )
+
+
+def test_free_expansion_breaks_nothing():
+    corner = [
+        Support.where(lambda x, y: (x < 1) & (y < 1), displacement=(0.0, 0.0)),
+        Support.where(lambda x, y: (x > 6) & (x < 7) & (y < 1), u2=0.0),
+    ]
+    hot = Load.temperature(lambda x, y: 1.0 + x - 2 * y, ExpansionTensor([[1.0, 0.2], [0.2, 0.5]]))
+    run = fracture.grow(
+        Scene(block(9, 7), 1.0, SOFT, corner, [hot], m=2), 1e-6, Programme(stop=10.0)
+    )
+    assert not len(run.broken_bonds)
+    with pytest.raises(SceneError, match="end at the surface cannot be broken under temperatures"):
+        fracture.grow(
+            Scene(block(9, 7), 1.0, SOFT, corner, [hot], m=2, surface="extrapolated"),
+            1e-6,
+            max_solves=1,
+        )
 
 
 @few
