@@ -15,7 +15,6 @@ ELSEWHERE = {
     # Aliases of types, and classes without a body.
     "solver/arrays.py": "tests/test_architecture.py",
     "solver/errors.py": "tests/solver/test_scene.py",
-    "solver/geometry/spread.py": "tests/solver/problem/test_conditions.py",
     # The state of a motion, which nothing but waves drives.
     "solver/analyses/motion.py": "tests/solver/analyses/test_waves.py",
     # A case is run, and perturbed, as a whole.

@@ -96,6 +96,17 @@ class CrackSet:
         """Points that are tips, shape (n, 2), m."""
         return self.frame.metres(np.unique(self.pieces[self.tips], axis=0))
 
+    def between(self, start: Array, ends: Array) -> Mask:
+        """Behind which points, (n, 2), the set lies as seen from one (units); ties as for bonds.
+
+        From a point on the set, tips aside, nothing is seen.
+        """
+        lying = np.zeros(1 + len(ends), dtype=bool)
+        found = np.zeros(len(ends), dtype=bool)
+        if len(self.pieces):
+            _mark_between(found, lying, start, ends, self.pieces, self.tips)
+        return found | lying[0]
+
     def cut(self, lattice: Lattice, offsets: Indices) -> tuple[Indices, Mask, Mask, int]:
         """Pairs of particles between which the set lies.
 
@@ -308,6 +319,44 @@ def cuts(
     if a * b > 0:
         return False
     return not ((a == 0 and tip_a) or (b == 0 and tip_b))
+
+
+@kernel(uses=(exact.__file__,), **_OPTIONS)
+def _lies(x: float, y: float, pieces: Array, tips: Mask) -> bool:
+    """Whether a point lies on the set, tips aside."""
+    for k in range(len(pieces)):
+        ax, ay, bx, by = pieces[k, 0, 0], pieces[k, 0, 1], pieces[k, 1, 0], pieces[k, 1, 1]
+        if not _touches(ax, ay, bx, by, x, y):
+            continue
+        tip = (tips[k, 0] and x == ax and y == ay) or (tips[k, 1] and x == bx and y == by)
+        if not tip:
+            return True
+    return False
+
+
+@kernel(uses=(exact.__file__,), **_OPTIONS)
+def _mark_between(
+    found: Mask, lying: Mask, start: Array, ends: Array, pieces: Array, tips: Mask
+) -> None:
+    lying[0] = _lies(start[0], start[1], pieces, tips)
+    for n in range(len(ends)):
+        x, y = ends[n, 0], ends[n, 1]
+        lying[n + 1] = _lies(x, y, pieces, tips)
+        for k in range(len(pieces)):
+            found[n] = found[n] or cuts(
+                start[0],
+                start[1],
+                x,
+                y,
+                lying[0],
+                lying[n + 1],
+                pieces[k, 0, 0],
+                pieces[k, 0, 1],
+                pieces[k, 1, 0],
+                pieces[k, 1, 1],
+                tips[k, 0],
+                tips[k, 1],
+            )
 
 
 @kernel(uses=(exact.__file__,), **_OPTIONS)

@@ -135,6 +135,21 @@ class Body:
             moved[place] = target if self.holds(target[None])[0] else closest
         return moved
 
+    def left_between(self, start: Array, ends: Array, edges: Indices) -> Mask:
+        """Whether straight lines leave the body on their way.
+
+        Parameters
+        ----------
+        start : ndarray, shape (2,)
+        ends : ndarray, shape (n, 2)
+            All in the body (units), or drawn in.
+        edges : ndarray of int
+            Those that lines of such a length can cross and come back (`critical`).
+        """
+        found = np.zeros(len(ends), dtype=bool)
+        _mark_left(found, start, ends, edges, self.vertices, self.before, self.after)
+        return found
+
     def leaving(self, lattice: Lattice, offsets: Indices) -> tuple[Indices, Mask]:
         """Pairs of particles between which a straight line leaves the body.
 
@@ -299,6 +314,23 @@ def _passes_out(
         if from_p > 0 and _outwards(ux, uy, vx, vy, wx, wy, -dx, -dy):
             return True
     return False
+
+
+@kernel(**_OPTIONS)
+def _mark_left(
+    found: Mask,
+    start: Array,
+    ends: Array,
+    edges: Indices,
+    vertices: Array,
+    before: Indices,
+    after: Indices,
+) -> None:
+    for k in range(len(ends)):
+        for e in range(len(edges)):
+            found[k] = found[k] or _passes_out(
+                start[0], start[1], ends[k, 0], ends[k, 1], edges[e], vertices, before, after
+            )
 
 
 @kernel(**_OPTIONS)

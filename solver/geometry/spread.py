@@ -14,8 +14,11 @@ import numpy as np
 import shapely
 from scipy.spatial import KDTree
 
-from ..arrays import Array, Indices
-from ..errors import SceneError
+from ..arrays import Array, Indices, Mask
+from ..errors import NoOutlineError, SceneError
+from .crack_set import CrackSet
+from .exact import CELL, Frame
+from .inside import Body
 from .lattice import Lattice
 from .outline import Outline
 from .regions import Crack
@@ -92,22 +95,29 @@ def on_particles(
 
 
 class _Sight:
-    """Which particles see a point: neither an edge of the body nor a crack lies between."""
+    """Which particles see a point: neither an edge of the body nor a crack lies between.
+
+    As for bonds: whatever parts those parts the particles that carry a load.
+    """
 
     def __init__(self, lattice: Lattice, cracks: Sequence[Crack]) -> None:
+        self.frame = Frame.of(lattice)
+        self.body: Body | None
         try:
-            body = lattice.region.outline(lattice.spacing)
-            self.body = shapely.buffer(body, _OFF * lattice.spacing, join_style="mitre")
-            shapely.prepare(self.body)
-        except SceneError:
+            self.body = Body.of(lattice)
+            self.edges = self.body.critical(_FURTHER)
+        except NoOutlineError:
             self.body = None
-        self.cracks = shapely.MultiLineString([crack.points for crack in cracks])
-        shapely.prepare(self.cracks)
+        self.cracks = CrackSet.joined(self.frame, cracks, self.body)
 
-    def __call__(self, point: Array, particles: Array) -> Array:
-        start = np.broadcast_to(point, particles.shape)
-        lines = shapely.linestrings(np.stack([start, particles], axis=1))
-        seen = ~shapely.intersects(self.cracks, lines)
-        if self.body is not None:
-            seen &= shapely.covers(self.body, lines)
-        return seen
+    def __call__(self, point: Array, particles: Array) -> Mask:
+        start, ends = self.frame.units(point[None])[0], self.frame.units(particles)
+        seen = ~self.cracks.between(start, ends)
+        if self.body is None:
+            return np.asarray(seen)
+        within = self.body.drawn_in(start[None])[0]
+        if np.hypot(*(within - start)) > _OFF * CELL:
+            return np.zeros(len(particles), dtype=bool)
+        return np.asarray(
+            seen & ~self.body.left_between(within, self.body.drawn_in(ends), self.edges)
+        )
