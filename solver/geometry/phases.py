@@ -257,21 +257,6 @@ def _clusters(nodes: Array, which: Indices, same: float) -> Indices:
     return found
 
 
-def interface_lengths(outline: Outline) -> dict[tuple[int, int], float]:
-    """Length (m) of the interface between each pair of phases, by their numbers."""
-    assert outline.phase is not None
-    assert outline.shared is not None
-    inner = np.nonzero(outline.face == INNER)[0]
-    ends = outline.shared[outline.edges[inner]]
-    owner = {(int(a), int(b)): int(p) for (a, b), p in zip(ends, outline.phase[inner], strict=True)}
-    found: dict[tuple[int, int], float] = {}
-    for (a, b), length in zip(ends, outline.length[inner], strict=True):
-        one, other = owner[int(a), int(b)], owner[int(b), int(a)]
-        if one < other:
-            found[one, other] = found.get((one, other), 0.0) + float(length)
-    return found
-
-
 def moved(regions: Sequence[Region], by: Point, grid: float) -> list[Region]:
     """Regions `by` further, see `Region.moved`."""
     return [region if by == (0.0, 0.0) else region.moved(by, grid) for region in regions]

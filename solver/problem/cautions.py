@@ -121,12 +121,13 @@ def thin_layers(lattice: Lattice, prescribed: Mask, m: float) -> tuple[str, ...]
 def thin_members(lattice: Lattice, m: float, surface: Surface) -> tuple[str, ...]:
     """Says so if parts of the body are thinner than two horizons."""
     mask = lattice.mask
-    inside = ndimage.distance_transform_edt(mask)
-    core = inside >= m - 1e-9
-    # A corner of 60° is two horizons away from what a disc of one horizon fills.
+    core = _core(mask, m)
     thin = mask.copy()
     if core.any():
-        thin &= ndimage.distance_transform_edt(~core) > 2.0 * m
+        away = ndimage.distance_transform_edt(~core)
+        # A corner of 60° is two horizons away from what a disc of one horizon fills.
+        thin &= away > 2.0 * m
+        thin |= _necks(mask & (away >= m), mask & (away < m))
     if not thin.any():
         return ()
     labels, count = ndimage.label(thin, structure=np.ones((3, 3)))
@@ -139,6 +140,41 @@ def thin_members(lattice: Lattice, m: float, surface: Surface) -> tuple[str, ...
         f"horizons ({2 * m:g}): its stiffness is off (two cells thick by {_THIN[surface]} in "
         f"bending with surface={surface!r}); take a smaller spacing or horizon",
     )
+
+
+def _core(mask: Mask, m: float) -> Mask:
+    """Cells in or beside which a disc of one horizon fits.
+
+    Its centre is that of a cell, a half nearer to the edge than to the next empty cell's centre, or
+    a corner of four: a member of five cells is told from one of six.
+    """
+    core = np.asarray(ndimage.distance_transform_edt(mask) - 0.5 >= m - 1e-9)
+    corner = mask[:-1, :-1] & mask[1:, :-1] & mask[:-1, 1:] & mask[1:, 1:]
+    middle = ndimage.distance_transform_edt(corner) >= m - 1e-9
+    rows, columns = mask.shape
+    for j in (0, 1):
+        for i in (0, 1):
+            core[j : rows - 1 + j, i : columns - 1 + i] |= middle
+    return core
+
+
+def _necks(left: Mask, filled: Mask) -> Mask:
+    """What discs of one horizon do not fill, and what they fill meets on more than one side.
+
+    A corner meets it on one side; a neck, however short, on two, and so does the ligament between
+    a hole and an edge.
+    """
+    around = np.ones((3, 3), dtype=bool)
+    labels, _ = ndimage.label(left, structure=around)
+    found = np.zeros_like(left)
+    for number, window in enumerate(ndimage.find_objects(labels), 1):
+        rows, columns = (slice(max(0, part.start - 1), part.stop + 1) for part in window)
+        mine = labels[rows, columns] == number
+        beside = ndimage.binary_dilation(mine, around) & filled[rows, columns]
+        _, sides = ndimage.label(beside, structure=around)
+        if sides > 1:
+            found[rows, columns] |= mine
+    return found
 
 
 def overlaps(bonds: Bonds, cracks: Sequence[Crack], displacement: Array) -> tuple[str, ...]:
@@ -220,4 +256,6 @@ def _middle(lattice: Lattice, cells: Mask) -> Array:
     """Mean position of some cells in the user's coordinates."""
     x, y = lattice.axes
     rows, columns = np.nonzero(cells)
-    return np.array([x[columns].mean(), y[rows].mean()]) + lattice.shift
+    found = np.array([x[columns].mean(), y[rows].mean()]) + lattice.shift
+    # A mean that is zero but for rounding.
+    return np.where(np.abs(found) < 1e-9 * lattice.spacing, 0.0, found)

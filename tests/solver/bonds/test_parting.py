@@ -85,3 +85,24 @@ def test_the_outline_keeps_its_length_and_the_mirror_image_is_the_mirror_image()
     assert (near & left).sum() == (near & ~left).sum()
     whole = parts.bonds.ended
     assert len(ended) < len(whole)
+
+
+@few
+@given(st.floats(-0.6, 0.6), st.sampled_from([3.0, 4.0, 3.4]))
+def test_edges_that_are_split_keep_their_owner_and_nodes_what_they_are(angle, width):
+    """The rim of a hole belongs to the hole: the membrane along it depends on that."""
+    held = Support.where(lambda x, y: x > 10, displacement=(0.0, 0.0), rotation=0.0)
+    parts = Scene(
+        rectangle(24, 12) - rectangle(width, width), 1.0, ElasticTensor.isotropic(1.0, 0.2), m=3,
+        surface="extrapolated", supports=[held],
+    ).discretise()  # fmt: skip
+    before = parts.bonds.ended.outline
+    pieces, _ = opened(parts, angle)
+    ended, _ = part(parts.bonds.ended, parts.lattice, pieces, NONE)
+    outline = ended.outline
+    assert len(outline.edges) > len(before.edges) or len(outline.nodes) > len(before.nodes)
+    assert not before.owned.all()
+    middle = outline.nodes[outline.edges].mean(axis=1)
+    np.testing.assert_array_equal(outline.owned, parts.lattice.region.contains(*middle.T))
+    assert len(outline.joints) == len(outline.nodes)
+    np.testing.assert_array_equal(outline.joints[: len(before.nodes)], before.joints)

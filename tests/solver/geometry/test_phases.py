@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from solver import Crack, SceneError, disc, rectangle
 from solver.geometry import Lattice, Phases, polygon
 from solver.geometry.outline import INNER
-from solver.geometry.phases import interface_lengths, moved
+from solver.geometry.phases import moved
 from tests.solver.bodies import few
 
 BODY = rectangle(2.0, 1.4)
@@ -20,6 +20,19 @@ def phases(*inclusions, spacing=0.1, body=BODY):
     lattice = Lattice(body, spacing, 3).centred
     x, y = lattice.shift
     return Phases(lattice, moved(inclusions, (-x, -y), lattice.grid))
+
+
+def interface_lengths(outline):
+    """Length (m) of the interface between each pair of phases, by their numbers."""
+    inner = np.nonzero(outline.face == INNER)[0]
+    ends = outline.shared[outline.edges[inner]]
+    owner = {(int(a), int(b)): int(p) for (a, b), p in zip(ends, outline.phase[inner], strict=True)}
+    found = {}
+    for (a, b), length in zip(ends, outline.length[inner], strict=True):
+        one, other = owner[int(a), int(b)], owner[int(b), int(a)]
+        if one < other:
+            found[one, other] = found.get((one, other), 0.0) + float(length)
+    return found
 
 
 @st.composite
