@@ -19,7 +19,7 @@ from multiprocessing.connection import Connection, wait
 from pathlib import Path
 
 from cmverify.case import Case, Failed, Level
-from cmverify.run import results
+from cmverify.run import results, unfinished
 from cmverify.run.lifeline import end_group
 from cmverify.run.threads import child_environment, thread_environment, threads_per_worker
 from cmverify.run.worker import serve
@@ -72,7 +72,8 @@ def run(
     jobs : int
         Worker processes; the cores are divided among them.
     resume : bool
-        Reuse records in `folder` that the same code measured with the same number of threads.
+        Reuse records in `folder` that the same code measured with the same number of threads, and
+        go on with measurements that it has left unfinished and kept the state of.
     timeout : float
         Seconds after which a single measurement is given up and fails.
     listen : callable
@@ -93,7 +94,10 @@ def run(
         if resume and _reusable(folder, task, threads, current):
             listen(Event("reused", task))
         else:
-            results.stem(folder, *task).with_suffix(".json").unlink(missing_ok=True)
+            stem = results.stem(folder, *task)
+            stem.with_suffix(".json").unlink(missing_ok=True)
+            # What a killed run has left is taken up by the same code, if it is asked to.
+            unfinished.discard(stem, unfinished.folder(stem, current) if resume else None)
             todo.append(task)
     # The longest tasks first, so that none of them is left running alone at the end: cracks that
     # grow take hundreds of solves at any resolution.

@@ -13,7 +13,7 @@ from pathlib import Path
 from weakref import WeakSet
 
 from cmverify.case import Case, Failed, Measurement, Method, Outcome
-from cmverify.run import results
+from cmverify.run import results, unfinished
 from cmverify.run.lifeline import hold
 
 _warm: WeakSet[Callable[[], None]] = WeakSet()
@@ -100,7 +100,9 @@ def serve(
         while (task := connection.recv()) is not None:
             name, method_name, resolution = task
             case = lookup(name)
-            done = record(case, case.method(method_name), resolution, threads, fingerprint)
+            stem = results.stem(folder, name, method_name, resolution)
+            with unfinished.kept_in(unfinished.folder(stem, fingerprint)):
+                done = record(case, case.method(method_name), resolution, threads, fingerprint)
             summary = done.outcome.message if isinstance(done.outcome, Failed) else None
             unwritten = None
             try:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from pathlib import Path
 from time import perf_counter, process_time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cmverify.case import Array, Stage, Stages
+from cmverify.run import unfinished
 
 if TYPE_CHECKING:
     from solver import Scene
@@ -19,6 +21,10 @@ if TYPE_CHECKING:
 SHARES = (0.05, 0.35, 0.7, 1.0)
 # A moment is kept when this much more has been dissipated than at the last one.
 _GROWTH = 1.15
+# Solves between two checkpoints, where a run may keep them.
+_EVERY = 50
+_MOMENTS = "moments.npz"
+
 DESCRIPTIONS = {
     "balance": "work − stored − dissipated − excess, relative to the work",
     "undercut": "share of G × crack length that broken bonds have not dissipated",
@@ -28,12 +34,13 @@ DESCRIPTIONS = {
 
 @dataclass
 class Moment:
-    """A state within a run."""
+    """A state within a run, after so many solves."""
 
     load_factor: float
     force: float
     dissipated: float
     damage: Array
+    solves: int
 
 
 @dataclass
@@ -93,40 +100,78 @@ def lead(
     until: Callable[[Growth], bool] | None = None,
     **options: Any,
 ) -> Led:
-    """Run `solver.fracture.grow` and keep moments as the crack grows."""
+    """Run `solver.fracture.grow` and keep moments as the crack grows.
+
+    In a worker of `cmverify run` the state is kept too, and a run that was killed goes on from it
+    with the same results to the last bit.
+    """
     from solver import fracture
 
-    moments: list[Moment] = []
+    place = unfinished.place()
+    moments = [] if place is None else _read(place / _MOMENTS)
+    taken_up: list[int] = []
 
     def keep(run: Growth) -> None:
         damage = run.damage
         damage[run.loose] = np.nan
         row = run.ledger.row(run.load_factor)
-        moments.append(Moment(run.load_factor, row["force"], row["dissipated"], damage))
+        moments.append(
+            Moment(run.load_factor, row["force"], row["dissipated"], damage, len(run.solves))
+        )
+        if place is not None:
+            _write(place / _MOMENTS, moments)
 
     def watch(run: Growth) -> bool:
+        if not taken_up:
+            # Moments after the last checkpoint come again.
+            taken_up.append(len(run.solves))
+            moments[:] = [moment for moment in moments if moment.solves <= len(run.solves)]
         spent = run.ledger.dissipated
         if spent > 0 and (not moments or spent > _GROWTH * moments[-1].dissipated):
             keep(run)
         return until is not None and until(run)
 
     begun, cpu = perf_counter(), process_time()
+    if place is not None:
+        options |= {"checkpoint": place / "run.npz", "every": _EVERY}
     run = fracture.grow(scene, toughness, programme, until=watch, **options)
-    keep(run)
     steps = run.steps
     solves = len(steps)
-    return Led(
-        run,
-        moments,
-        {"solve": perf_counter() - begun},
-        {
-            "solves": solves,
-            "iterations": int(steps["iterations"].sum()),
-            "bonds a solve": round(len(run.broken_bonds) / solves, 1),
-            "CPU s a solve": round((process_time() - cpu) / solves, 3),
-            "ended": run.reason,
-        },
-    )
+    if not taken_up:
+        # It was killed after its end, its last moment kept.
+        moments[:] = [moment for moment in moments if moment.solves < solves]
+    keep(run)
+    since = taken_up[0] if taken_up else solves
+    statistics: dict[str, float | int | str] = {
+        "solves": solves,
+        "iterations": int(steps["iterations"].sum()),
+        "bonds a solve": round(len(run.broken_bonds) / solves, 1),
+        "CPU s a solve": round((process_time() - cpu) / max(solves - since, 1), 3),
+        "ended": run.reason,
+    }
+    if since > 1:
+        statistics["taken up at solve"] = since
+    return Led(run, moments, {"solve": perf_counter() - begun}, statistics)
+
+
+def _write(path: Path, moments: list[Moment]) -> None:
+    names = [entry.name for entry in fields(Moment)]
+    partial = path.with_suffix(".part.npz")
+    arrays: dict[str, Any] = {name: [getattr(m, name) for m in moments] for name in names}
+    np.savez(partial, **arrays)
+    partial.replace(path)
+
+
+def _read(path: Path) -> list[Moment]:
+    if not path.exists():
+        return []
+    with np.load(path, allow_pickle=False) as file:
+        columns = {entry.name: list(file[entry.name]) for entry in fields(Moment)}
+    rows = zip(*columns.values(), strict=True)
+    return [
+        Moment(float(factor), float(force), float(spent), damage, int(solves))
+        for factor, force, spent, damage, solves in rows
+    ]
 
 
 def events(run: Growth, least: float) -> list[tuple[float, float]]:
