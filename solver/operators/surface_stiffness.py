@@ -299,6 +299,46 @@ class SurfaceStiffness:
         strain += np.einsum("abk,bk->ak", self._ends[1], there)
         return strain, there - at
 
+    def energies(
+        self, family: Family, moduli: Moduli, values: Array, nodal: Array
+    ) -> tuple[Array, list[tuple[Array, Array]]]:
+        """Energies of all that ends at the surface, piece by piece, per volume of a particle.
+
+        Parameters
+        ----------
+        family : Family
+        moduli : Moduli
+            Those that it was made of.
+        values, nodal : ndarray, shapes (components, p) and (components, s)
+            Of the particles and of the nodes.
+
+        Returns
+        -------
+        bonds : ndarray, shape (k,)
+            Of the bonds that end at the surface.
+        others : list of (places, shape (l, 2), m; energies, shape (l,))
+            Of the corners' chords and of the membrane along the edge, where there are any.
+        """
+        ended, outline = self.ended, self.ended.outline
+        number = np.full(len(outline.nodes), -1)
+        number[self.nodes] = np.arange(len(self.nodes))
+        rule = BondStrains(family, moduli, ended.offset, ended.length, ended.factor)
+        strains, _ = self.strains(values, nodal)
+        others = []
+        if (chords := ended.chords) is not None:
+            known = chord_strains(ended, family, moduli, number)
+            if known is not None:
+                weight, _, strain = known
+                energy = 0.5 * (weight * (strain @ nodal.ravel()) ** 2)
+                ends = outline.nodes[outline.edges[chords.edge]].mean(axis=(1, 2))
+                others.append((ends, energy.reshape(-1, len(ends)).sum(axis=0)))
+        skin = membrane(ended, family, moduli, number)
+        if skin is not None:
+            skin = skin.stiffening() if self.stiffened else skin
+            middle = outline.nodes[outline.edges[skin.edges]].mean(axis=1)
+            others.append((middle, 0.5 * skin.weight * (skin.strain @ nodal.ravel()) ** 2))
+        return 0.5 * (rule.weight * strains**2).sum(axis=0), others
+
     def relief(self, which: Indices) -> Array:
         """Diagonal blocks of −K_ps K_ss⁻¹ K_sp of some particles (positions among `particles`).
 
