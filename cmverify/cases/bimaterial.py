@@ -143,10 +143,12 @@ def plate(scale: float, n: int) -> Measurement:
     x, y = solution.points.T
     wanted, stress = exact.displacement(x, y), symmetric(recovery.stress(solution))
     there = exact.stress_at(x, y)
+    # Families of the held layer are cut: nothing recovers a stress from them.
+    whole = np.maximum(abs(x), abs(y)) < 1.0 - M / n
     core = np.hypot(x, y) < WITHIN
     error = np.abs(solution.displacement - wanted).max() / np.abs(wanted).max()
     items = {
-        f"s{name}": Field(f"$\\sigma_{{{name}}}$", "Pa", stress[:, k], there[:, k])
+        f"s{name}": Field(f"$\\sigma_{{{name}}}$", "Pa", stress[whole, k], there[whole, k])
         for k, name in enumerate(("11", "22", "12"))
     }
     return Measurement(
@@ -158,7 +160,7 @@ def plate(scale: float, n: int) -> Measurement:
         },
         adapters.solver_seconds(solution.statistics),
         adapters.solver_statistics(solution.statistics),
-        FieldSet(solution.points, items, spacing=1.0 / n),
+        FieldSet(solution.points[whole], items, spacing=1.0 / n),
     )
 
 

@@ -269,16 +269,29 @@ def few(scale: float, n: int) -> Measurement:
     (_, rotation, solution), middling = shear[1]
     turned = relative_l2(rotation, middling.rotation(solution.points[:, 1]))
     bending, last = bent(RATIOS[0], n)
+    plain = sheared(0.0, n)[0] / MU
+    at, fine = np.array([RATIOS[0], 5.0]), np.geomspace(RATIOS[0], RATIOS[-1], 200)
+    plot = LinePlot(
+        "Size effect in simple shear",
+        "H/l",
+        "τH/(U μ)",
+        (
+            Curve("bonds, Cosserat", at, np.array([stiffness / MU for (stiffness, *_), _ in shear]),
+                  np.array([exact(ratio).apparent_shear / MU for ratio in fine]), fine),
+            Curve("without bending of bonds", at, np.full(2, plain), np.ones(len(fine)), fine),
+        ),
+    )  # fmt: skip
     return Measurement(
         last.statistics.unknowns,
         {
             "shear": worst(errors),
             "rotation": turned,
             "bending effect": abs((bending - 1) / (form.bending_ratio - 1) - 1),
-            "shear without": abs(sheared(0.0, n)[0] / MU - 1),
+            "shear without": abs(plain - 1),
         },
         adapters.solver_seconds(last.statistics),
         adapters.solver_statistics(last.statistics),
+        lines=(plot,),
     )
 
 

@@ -171,13 +171,13 @@ def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture
         )
     featured = {
         n: m
-        for n, m in result.outcomes.get(case.featured, {}).items()
+        for n, m in result.outcomes.get(result.featured, {}).items()
         if isinstance(m, Measurement)
     }
     if not featured:
         return pictures
     finest = max(featured)
-    where = f"{case.featured} at Δx = {case.length}/{finest}"
+    where = f"{result.featured} at Δx = {case.length}/{finest}"
     fields = featured[finest].fields
     for key, item in (fields.items if fields else {}).items():
         assert fields is not None
@@ -240,11 +240,11 @@ def _export(result: CaseResult, folder: Path) -> list[str]:
     """Write the featured fields; returns their paths relative to the page."""
     from cmverify.exchange.export import write_fields
 
-    found = result.finest(result.case.featured)
+    found = result.finest(result.featured)
     if found is None or found[1].fields is None:
         return []
     resolution, measurement = found
-    name = f"{result.case.name}-{result.case.featured.replace('/', '-')}-{resolution}"
+    name = f"{result.case.name}-{result.featured.replace('/', '-')}-{resolution}"
     assert measurement.fields is not None
     paths = write_fields(measurement.fields, folder / "fields" / name)
     return [path.relative_to(folder).as_posix() for path in paths]

@@ -84,6 +84,19 @@ class CaseResult:
         done = [(n, m) for n, m in series.items() if isinstance(m, Measurement)]
         return done[-1] if done else None
 
+    @property
+    def featured(self) -> str:
+        """The method that figures show: the case's, or the first measured at this level."""
+        named = self.case.featured
+        if self.finest(named) is not None:
+            return named
+        drawn = (
+            m.name
+            for m in self.case.methods
+            if (found := self.finest(m.name)) and (found[1].lines or found[1].fields)
+        )
+        return next(drawn, named)
+
 
 def summarise(cases: Iterable[Case], records: Iterable[results.Record]) -> list[CaseResult]:
     """Group records by case and judge them; cases without records are left out."""

@@ -133,3 +133,15 @@ def test_methods_stand_beside_each_other():
     assert axis.get_legend_handles_labels()[1] == ["truth", *methods]
     np.testing.assert_allclose(axis.lines[1].get_ydata(), x + 0.2)
     assert len({tuple(drawn.get_color()) for drawn in axis.lines}) == 4
+
+
+def test_a_case_whose_featured_method_is_not_measured_shows_another(tmp_path):
+    """As at a quick level, where a cheaper method stands for it."""
+    case = toy()
+    other = replace(case.methods[0], name="dearer")
+    case = replace(case, methods=(other, *case.methods), featured="dearer")
+    (judged,) = summary.summarise([case], records({10: trapezium(10), 20: trapezium(20)}))
+    assert judged.featured == toy().methods[0].name
+    page = build([judged], INFO, tmp_path).read_text()
+    assert page.count('src="data:image/svg') == 3
+    assert page.count('src="data:image/png') == 1
