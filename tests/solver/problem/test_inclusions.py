@@ -251,3 +251,31 @@ def test_cracks_do_not_grow_in_it_and_sensors_are_of_one_solid():
                     supports=[Support.where(lambda x, y: y < -0.4, displacement=0.0)],
                     loads=[Load.traction((0.0, 1.0), (-0.5, 0.5), (0.5, 0.5))])  # fmt: skip
     assert np.isfinite(cracked.solve().displacement).all()
+
+
+@few
+@given(
+    st.floats(-2.5, 2.5),
+    st.floats(0.0, 0.32),
+    st.sampled_from([2, 3, 4, 5]),
+    st.sampled_from(TREATMENTS),
+    st.floats(0.0, 0.3),
+    st.floats(0.0, 3.0),
+)
+def test_overlapping_inclusions_of_any_contrast_are_solved(power, nu, m, treatment, off, turn):
+    """Interfaces anywhere in their cells, slivers, corners and free edges: no negative energy."""
+    other = ElasticTensor.isotropic(10**power, nu)
+    scene = Scene(
+        rectangle(2.0, 1.4), 0.1, SOLID, m=m, surface=treatment,
+        supports=[Support.where(lambda x, y: x < -0.8, displacement=0.0)],
+        loads=[Load.body_force((1.0, 0.5))],
+        inclusions=[
+            Inclusion(rectangle(0.8, 1.0, (0.1 + off, 0.2 + off)), other),
+            Inclusion(rectangle(0.77, 0.7, (0.09 + off, -0.2)), other),
+            Inclusion(rectangle(0.5, 0.3, (-0.4, 0.3 + off), turn), other),
+        ],
+    )  # fmt: skip
+    solution = scene.solve()
+    assert np.isfinite(solution.displacement).all()
+    stiff = np.abs(solution.displacement).max() * min(1.0, 10**power)
+    assert stiff < 60.0
