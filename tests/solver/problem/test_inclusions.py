@@ -26,6 +26,7 @@ from solver import (
     recovery,
     rectangle,
     transient,
+    waves,
 )
 from solver.fracture.sensing import Sensor
 from tests.solver.bodies import few
@@ -205,6 +206,29 @@ def test_masses_and_capacities_are_those_of_the_phases():
     warm, x = found.temperature[-1], found.points[:, 0]
     np.testing.assert_allclose(warm[x < 0], 0.1, rtol=1e-3)
     np.testing.assert_allclose(warm[x > 0], 0.025, rtol=1e-3)
+
+
+def test_a_wave_is_reflected_by_the_difference_of_impedances():
+    """Z₂ = 4 Z₁ at the same speed: −3/5 of a pulse goes back, 2/5 goes on."""
+    speed, place, width = np.sqrt(SOLID.voigt[0, 0]), -1.5, 0.4
+
+    def pulse(x, y):
+        return np.stack([np.exp(-(((x - place) / width) ** 2)), 0 * x], axis=-1)
+
+    def velocity(x, y):
+        return 2 * speed * ((x - place) / width**2)[..., None] * pulse(x, y)
+
+    scene = Scene(
+        rectangle(8.0, 0.3), 0.05, SOLID, m=2, density=1.0,
+        supports=[Support.where(lambda x, y: np.abs(x) < 9, u2=0.0, rotation=0.0)],
+        inclusions=[Inclusion(rectangle(4.0, 2.0, (2.0, 0.0)), ElasticTensor.isotropic(4.0, 0.2),
+                              density=4.0)],
+    )  # fmt: skip
+    found = waves.run(scene, pulse, end=3.2 / speed, velocity=velocity)
+    u, x = found.displacement[-1][:, 0], found.points[:, 0]
+    # What the lattice disperses of a pulse of 16 cells is a few per cent.
+    assert u[x < -0.3].min() == pytest.approx(-0.6, abs=0.02)
+    assert u[x > 0.2].max() == pytest.approx(0.4, abs=0.02)
 
 
 @pytest.mark.parametrize(
