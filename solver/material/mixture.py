@@ -21,8 +21,8 @@ from .physics import Physics
 from .stability import Stability
 
 _CENTRAL = (
-    "one solid of this body has bonds that resist shear and another has none (C66 = C12, ν = 1/3 in "
-    "plane stress): their particles have different unknowns. Change it a little (ν = 0.3333)"
+    "one solid of this body has bonds that resist shear and another has none (C66 = C12, ν = 1/3 "
+    "in plane stress): their particles have different unknowns. Change it a little (ν = 0.3333)"
 )
 
 
