@@ -113,10 +113,14 @@ class SurfaceStiffness:
             self.stiffened = True
             skin = None if skin is None else skin.stiffening()
             if inner is not None:
-                matrix = bonds_alone + inner.stiffening().stiffness
+                inner = inner.stiffening()
+                matrix = bonds_alone + inner.stiffness
             self.matrix = matrix + _stiffness_of_skin(skin, matrix.shape)
             self._hold()
             self._lu = self._factorise(number[ended.outline.edges])
+
+        #: What lattices lack along interfaces, as it is counted.
+        self.layers: Layers | None = inner
 
     @property
     def number(self) -> Indices:
@@ -458,10 +462,16 @@ class Layers(NamedTuple):
         Twice the energy for a strain of one along each edge.
     strain : sparse, shape (strains·e, components·s)
         These strains of the nodes' values.
+    edges : ndarray of int, shape (e,)
+        Of the outline.
+    along : ndarray, shape (2, e)
+        Their directions.
     """
 
     weight: Array
     strain: sparse.csr_array
+    edges: Indices
+    along: Array
 
     @property
     def stiffness(self) -> sparse.csc_array:
@@ -528,7 +538,7 @@ def interface_layers(
     order = np.argsort(key)
     found = order[np.minimum(np.searchsorted(key[order], back), len(order) - 1)]
     twin = np.where(key[found] == back, found, np.arange(len(edges)))
-    return Layers(weight, strain), twin
+    return Layers(weight, strain, edges, along / length), twin
 
 
 def _stiffness_of_skin(skin: Membrane | None, shape: tuple[int, int]) -> sparse.csc_array:

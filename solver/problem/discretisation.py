@@ -524,15 +524,21 @@ def _eigenstrain(
     acting = [item.strain for item in scene.loads if item.strain is not None]
     if not acting:
         return None
-    surface = operator.ended_stiffness
-    particles = sum(strain(lattice.places, False).T for strain in acting)
+    surface, phases = operator.ended_stiffness, operator.bonds.phases
+    solids = [None, *(inclusion.expansion for inclusion in scene.inclusions)]
+    each = [sum(strain(lattice.places, False, own).T for strain in acting) for own in solids]
+    particles = np.asarray(each[0])
+    if phases is not None:
+        particles = np.stack(each)[phases.of, :, np.arange(lattice.count)].T
     nodes = None
     if surface is not None:
         at = surface.ended.outline.nodes + lattice.centred.shift
         # Nodes at which no bond ends feel nothing: a value a node is one of those that do.
-        nodes = np.zeros((3, len(at)))
-        nodes[:, surface.nodes] = sum(strain(at[surface.nodes], True).T for strain in acting)
-    found = Eigenstrain(operator.bonds, operator.moduli, np.asarray(particles), nodes)
+        nodes = np.zeros((len(solids), 3, len(at)))
+        for k, own in enumerate(solids):
+            felt = sum(strain(at[surface.nodes], True, own).T for strain in acting)
+            nodes[k][:, surface.nodes] = felt
+    found = Eigenstrain(operator.bonds, operator.moduli, particles, nodes)
     load += found.load()
     if surface is not None and nodal_load is not None:
         on_particles, on_nodes = found.surface_load(surface)

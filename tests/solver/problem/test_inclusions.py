@@ -238,7 +238,7 @@ def test_a_wave_is_reflected_by_the_difference_of_impedances():
         ({"inclusions": [Inclusion(disc(0.2), SOLID, density=1.0)]}, "the scene has none"),
         ({"inclusions": [disc(0.2)]}, "inclusions must be a list of Inclusion"),
         ({"broken": lambda lattice, family: None}, "single bonds cannot be broken"),
-        ({"loads": [Load.temperature(1.0, ExpansionTensor.isotropic(1.0))]}, "know one solid"),
+        ({"loads": [Load.temperature(1.0, ExpansionTensor.isotropic(1.0))]}, "needs its expansion"),
     ],
 )
 def test_scenes_that_inclusions_do_not_fit(changes, message):
