@@ -45,7 +45,8 @@ def residual(parts: Discretisation, unknowns: Array) -> Array:
     found = np.zeros_like(parts.load)
     rows = operator.product(given[:, operator.active]) - parts.load[:, operator.active]
     if operator.ended_stiffness is not None and parts.nodal_load is not None:
-        operator.add_at_surface(rows, operator.ended_stiffness.condensed_load(parts.nodal_load))
+        condensed = operator.ended_stiffness.condensed_load(parts.nodal_load, parts.edge_values)
+        operator.add_at_surface(rows, condensed)
     found[:, operator.active] = rows
     return found
 

@@ -240,6 +240,9 @@ class Inclusion(Table):
     region: Region
     material: Material | None = Field(default=None, description="That of the body by default")
     thickness: Positive | None = Field(default=None, description="m")
+    expansion: Matrix2 | None = Field(
+        default=None, description="Under temperatures, 1/K; in plane strain the effective one"
+    )
 
     @model_validator(mode="after")
     def _differs(self) -> Inclusion:

@@ -318,10 +318,17 @@ def _region(shapes: Any) -> Region:
 
 
 def _inclusion(table: model.Inclusion, material: Any) -> Inclusion:
-    from solver import Inclusion
+    from solver import ExpansionTensor, Inclusion
 
     own = material if table.material is None else _material(table.material)
-    return Inclusion(_region(table.region), own, thickness=table.thickness, **_stores(table))
+    expansion = None if table.expansion is None else ExpansionTensor(table.expansion)
+    return Inclusion(
+        _region(table.region),
+        own,
+        thickness=table.thickness,
+        expansion=expansion,
+        **_stores(table),
+    )
 
 
 def _material(table: Any) -> Any:

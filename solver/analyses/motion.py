@@ -187,12 +187,30 @@ class Motion:
         rhs = self.forcing.right_hand_side(time).reshape(self.body.operator.components, -1)
         return np.where(self.fixed, 0.0, rhs) if self.fixed.any() else rhs
 
+    def _pushed(self, early: float, late: float, time: float) -> Array:
+        """`_load`, and with damping β K what supports exert by their velocity, early to late.
+
+        Forces are those of u + β u' throughout, of what is prescribed as of what is free.
+        """
+        load, beta = self._load(time), self.settings.beta
+        if not (beta and self.forcing.moving):
+            return load
+        more = beta * self.forcing.of_velocity(early, late).reshape(load.shape)
+        return load + (np.where(self.fixed, 0.0, more) if self.fixed.any() else more)
+
+    def _around(self, time: float) -> tuple[float, float]:
+        """Two times near one, none before the start, between which velocities are differences."""
+        near = 1e-3 * self.step
+        return max(time - near, self.settings.start), time + near
+
     def _condensed(self, time: float) -> Array:
         """Loads of the moving unknowns, those of massless rotations condensed onto them.
 
         Couples act through rotations that follow at once; so do supports that hold neighbours.
+        Supports' velocity lags half a step like that of all others.
         """
-        load = self._load(time)
+        early, late = (time - self.step, time) if self.steps else self._around(time)
+        load = self._pushed(early, late, time)
         if self.rows == len(load):
             return load
         moment = load[2]
@@ -288,12 +306,10 @@ class Motion:
     def _keep(self, time: float, u: Array, v: Array) -> None:
         """Keep the fields at one of the times; prescribed particles follow their supports."""
         body, active = self.body, self.body.operator.active
-        h = 1e-3 * self.step
         given = self.forcing.values(time)
         speed = np.where(np.isnan(given), np.nan, 0.0)
         if self.forcing.moving:
-            # Central, but not before the start.
-            early, late = max(time - h, self.settings.start), time + h
+            early, late = self._around(time)
             speed = (self.forcing.values(late) - self.forcing.values(early)) / (late - early)
         field = np.full((5, body.lattice.count), np.nan)
         field[0:2], field[2:4] = given[:2], speed[:2]
@@ -423,7 +439,7 @@ class Motion:
             u[:2], v[:2] = self.u, self.v
             if shape[0] == 3:
                 u[2] = self._rotations(self.time, u[:2])
-            load = self._load(self.time)
+            load = self._pushed(*self._around(self.time), self.time)
             # Rotations of u + β v, which the damping with the stiffness turns too.
             lagged = np.where(self.fixed[:2], 0.0, u[:2] + newmark.beta * v[:2])
             moment = load[2] if shape[0] == 3 else None
@@ -442,7 +458,7 @@ class Motion:
         while self.steps < self.count:
             last_u, last_v, last_a = self.u, self.v, self.a
             late = self.time + self.step if self.steps + 1 < self.count else self.settings.end
-            load = self._load(late)
+            load = self._pushed(*self._around(late), late)
             self.u, self.v, self.a, self.guess = newmark.advance(
                 last_u, last_v, last_a, self.guess, load, self._given(late)
             )

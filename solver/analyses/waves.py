@@ -214,7 +214,8 @@ def run(
     rotations : {"condensed", "inertia"}
         See the module's docstring; inertia with Verlet only.
     damping : pair of float
-        Rayleigh's α (1/s) and β (s).
+        Rayleigh's α (1/s) and β (s). β damps the strain rate, of supports that move too; it is of
+        first order in time with Verlet's method, whose velocity lags half a step.
     tolerance : float, optional
         Of the moments that condensed rotations leave (1e-6), or of Newmark's systems (1e-10).
     probes : array_like, shape (p, 2), optional
@@ -283,11 +284,6 @@ def _checked(
     alpha, beta = (float(part) for part in damping)
     if not (0 <= alpha < np.inf and 0 <= beta < np.inf):
         raise SceneError(f"damping takes two numbers that are not negative, not {damping}")
-    if beta and any(support.timed for support in scene.supports):
-        raise SceneError(
-            "damping with the stiffness (β) beside supports that move is not modelled: it would "
-            "need their velocity. Use α, or let loads drive the body"
-        )
     usual = 1e-6 if scheme == "verlet" else 1e-10
     accuracy = usual if tolerance is None else tolerance
     if not 0 < accuracy < 1e-2:

@@ -142,10 +142,10 @@ class Outline:
         return nodes if self.shared is None else self.shared[nodes]
 
     def touched(self, edges: Indices) -> Mask:
-        """Which nodes are ends of some edges, or share their place, shape (n,)."""
+        """Which nodes are ends of some edges, shape (n,)."""
         at = np.zeros(len(self.nodes), dtype=bool)
-        at[self.standing_for(self.edges[edges])] = True
-        return at if self.shared is None else at[self.shared]
+        at[self.edges[edges]] = True
+        return at
 
     @property
     def length(self) -> Array:

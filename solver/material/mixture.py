@@ -20,6 +20,11 @@ from .moduli import Moduli
 from .physics import Physics
 from .stability import Stability
 
+_CENTRAL = (
+    "one solid of this body has bonds that resist shear and another has none (C66 = C12, ν = 1/3 "
+    "in plane stress): their particles have different unknowns. Change it a little (ν = 0.3333)"
+)
+
 
 @dataclass(frozen=True, eq=False)
 class Mixture(Moduli):
@@ -43,11 +48,7 @@ class Mixture(Moduli):
 
     def __post_init__(self) -> None:
         if len({moduli.strains for moduli in self.solids}) > 1:
-            raise SceneError(
-                "one solid of this body has bonds that resist shear and another has none (C66 = "
-                "C12, ν = 1/3 in plane stress): their particles have different unknowns. Change "
-                "one of them a little"
-            )
+            raise SceneError(_CENTRAL)
 
         if "χ" in self.strains:
             raise SceneError(
@@ -111,10 +112,15 @@ def together(found: tuple[Stability, ...]) -> Stability:
 
     Raises
     ------
+    SceneError
+        If some have rotations and others have none.
     InadmissibleMaterialError
         If rotations are stiff in one solid and of negative stiffness in another.
     """
-    if len({stability.kind for stability in found}) > 1:
+    found_kinds = {stability.kind for stability in found}
+    if "central" in found_kinds and len(found_kinds) > 1:
+        raise SceneError(_CENTRAL)
+    if len(found_kinds) > 1:
         kinds = ", ".join(stability.kind for stability in found)
         raise InadmissibleMaterialError(
             f"the solids of this body are of different kinds ({kinds}): where C66 < C12 (ν > 1/3 "

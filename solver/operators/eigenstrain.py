@@ -30,6 +30,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from ..arrays import Array, Indices
 from ..bonds import Bonds, EndedBonds
@@ -56,8 +57,8 @@ class Eigenstrain:
     moduli : Moduli
     particles : ndarray, shape (3, N)
         ε11, ε22 and 2 ε12.
-    nodes : ndarray, shape (3, nodes of the outline), optional
-        Where bonds end at the surface.
+    nodes : ndarray, shape (phases, 3, nodes of the outline), optional
+        Where bonds end at the surface: that of each of the body's solids.
     """
 
     bonds: Bonds
@@ -77,7 +78,7 @@ class Eigenstrain:
     def of_ended(self, ended: EndedBonds) -> Array:
         """e_a of bonds that end at the surface, shape (strains, k)."""
         ends = ended.outline.edges[ended.edge]
-        there = self._at(ends, ended.position)
+        there = self._at(ends, ended.position, ended.phase)
         family = self.bonds.family
         normal, length = family.normal[ended.offset].T, ended.length
         of = self.moduli.homogeneous(normal)
@@ -118,7 +119,7 @@ class Eigenstrain:
             slope += (weight / family.length[o]) * (
                 difference[:, None] * family.normal[o][None, :, None]
             )
-        there = self._at(ended.outline.edges[ended.edge], ended.position)
+        there = self._at(ended.outline.edges[ended.edge], ended.position, ended.phase)
         difference = there - self.particles[:, ended.particle]
         normal, weight = family.normal[ended.offset].T, family.weight[ended.offset]
         # As whole bonds of the same slope, weighted by the square of what there is of them.
@@ -136,21 +137,35 @@ class Eigenstrain:
         e11, e22, e12 = found[0], found[1], 0.5 * found[2]
         return np.stack([np.stack([e11, e12]), np.stack([e12, e22])])
 
-    def _at(self, ends: Indices, position: Array) -> Array:
-        """At points along the outline's edges, shape (3, k)."""
+    def _at(self, ends: Indices, position: Array, phase: Indices | None) -> Array:
+        """At points along the outline's edges, as their phases have it, shape (3, k)."""
         assert self.nodes is not None
-        return (1 - position) * self.nodes[:, ends[:, 0]] + position * self.nodes[:, ends[:, 1]]
+        own = np.zeros(len(ends), dtype=np.int64) if phase is None else phase
+        first, last = (self.nodes[own, :, ends[:, k]].T for k in (0, 1))
+        return np.asarray((1 - position) * first + position * last)
+
+    def _nearest(self, places: Array, phase: Indices | None) -> Indices:
+        """The particles nearest to some places, of their phases."""
+        lattice, phases = self.bonds.lattice, self.bonds.phases
+        if phase is None or phases is None:
+            return np.asarray(lattice.tree.query(places)[1])
+        found = np.zeros(len(places), dtype=np.int64)
+        for k in np.unique(phase):
+            mine = np.nonzero(phases.of == k)[0]
+            here = phase == k
+            found[here] = mine[KDTree(lattice.points[mine]).query(places[here])[1]]
+        return found
 
     def load(self) -> Array:
         """What bonds between particles exert, shape (components, N), per volume."""
         family, moduli = self.bonds.family, self.moduli
         scales, arm = moduli.scales(family.spacing), 0.5 * family.length
         rows = moduli.end_rows(scales, family.normal.T, -1.0, arm) / family.length
-        weight = family.weight * family.cell_area * moduli.pair_length(family) * moduli.stiffness
+        weight = family.weight * family.cell_area * moduli.pair_length(family)
         found = np.zeros((moduli.components, self.bonds.lattice.count))
         for o in range(family.size):
-            force = (weight[:, o, None] * rows[:, :, o]).T @ self.of_offset(o)
-            found += self.bonds.strength(o) * force
+            force = rows[:, :, o].T @ (moduli.of_offset(o) * self.of_offset(o))
+            found += self.bonds.strength(o) * weight[o] * force
         return found
 
     def surface_load(self, surface: SurfaceStiffness) -> tuple[Array, Array]:
@@ -179,11 +194,14 @@ class Eigenstrain:
         if chords is not None and ended.chords is not None:
             weight, normal, strain = chords
             edge, position = ended.chords.edge, ended.chords.position
-            middle = 0.5 * sum(self._at(outline.edges[edge[:, k]], position[:, k]) for k in (0, 1))
+            phase = None if outline.phase is None else outline.phase[edge[:, 0]]
+            middle = 0.5 * sum(
+                self._at(outline.edges[edge[:, k]], position[:, k], phase) for k in (0, 1)
+            )
             free = np.einsum("avk,vk->ak", moduli.homogeneous(normal), middle)
             length = ended.chords.length
             corners = outline.nodes[outline.edges[edge]]
-            _, nearest = self.bonds.lattice.tree.query(corners.mean(axis=(1, 2)))
+            nearest = self._nearest(corners.mean(axis=(1, 2)), phase)
             slope = self.gradient(ended)[..., nearest]
             first, last = (_sag(slope, corners[:, k], position[:, k]) for k in (0, 1))
             lever = length * (0.5 * length - ended.chords.arm[:, 1])
@@ -192,9 +210,16 @@ class Eigenstrain:
         skin = membrane(ended, family, moduli, number)
         if skin is not None:
             skin = skin.stiffening() if surface.stiffened else skin
-            middle = self._at(outline.edges[skin.edges], np.full(len(skin.edges), 0.5))
+            phase = None if outline.phase is None else outline.phase[skin.edges]
+            middle = self._at(outline.edges[skin.edges], np.full(len(skin.edges), 0.5), phase)
             free = (homogeneous_stretch(skin.along) * middle).sum(axis=0)
             total = total + skin.strain.T @ (skin.weight * free)
+        if (inner := surface.layers) is not None:
+            # Bonds from node to node along interfaces.
+            phase = None if outline.phase is None else outline.phase[inner.edges]
+            middle = self._at(outline.edges[inner.edges], np.full(len(inner.edges), 0.5), phase)
+            free = np.einsum("avk,vk->ak", moduli.homogeneous(inner.along), middle)
+            total = total + inner.strain.T @ (inner.weight.ravel() * free.ravel())
         on_nodes = np.zeros((c, len(outline.nodes)))
         on_nodes[:, surface.nodes] = total.reshape(c, -1)
         return on_particles, on_nodes

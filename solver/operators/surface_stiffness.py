@@ -113,10 +113,14 @@ class SurfaceStiffness:
             self.stiffened = True
             skin = None if skin is None else skin.stiffening()
             if inner is not None:
-                matrix = bonds_alone + inner.stiffening().stiffness
+                inner = inner.stiffening()
+                matrix = bonds_alone + inner.stiffness
             self.matrix = matrix + _stiffness_of_skin(skin, matrix.shape)
             self._hold()
             self._lu = self._factorise(number[ended.outline.edges])
+
+        #: What lattices lack along interfaces, as it is counted.
+        self.layers: Layers | None = inner
 
     @property
     def number(self) -> Indices:
@@ -162,10 +166,8 @@ class SurfaceStiffness:
         self.held: Mask = np.zeros(matrix.shape[0], dtype=bool)
         self.given: Array = np.zeros(matrix.shape[0])
         if ended.held is not None and ended.given is not None:
-            times = self._gathered(ended.held[:, self.nodes].ravel().astype(np.float64))
-            given = np.where(ended.held, ended.given, 0.0)[:, self.nodes].ravel()
-            self.held = times > 0
-            self.given = self._gathered(given) / np.maximum(times, 1.0)
+            self.held = self._gathered(ended.held[:, self.nodes].ravel().astype(np.float64)) > 0
+            self.given = self._prescribed(ended.given)
         self._free_matrix, self._free_coupling = matrix, coupling
         self._back: sparse.csr_array = (
             self.transposed if self._spread is None else sparse.csr_array(coupling.T)
@@ -177,6 +179,14 @@ class SurfaceStiffness:
             identity = sparse.diags_array(self.held * self._scale)
             self._free_matrix = sparse.csc_array(free @ matrix @ free + identity)
             self._free_coupling = sparse.csr_array(free @ coupling)
+
+    def _prescribed(self, given: Array) -> Array:
+        """Values of held nodes (components, nodes of the outline) of what is free of each other."""
+        held = self.ended.held
+        assert held is not None
+        times = self._gathered(held[:, self.nodes].ravel().astype(np.float64))
+        values = np.where(held, given, 0.0)[:, self.nodes].ravel()
+        return np.asarray(self._gathered(values) / np.maximum(times, 1.0))
 
     def _factorise(self, edges: Indices) -> SuperLU:
         """Factors of K_ss. `edges` joins all nodes of the outline, −1 for those without bonds."""
@@ -234,7 +244,7 @@ class SurfaceStiffness:
                 found += float((entry * others[b] * values[a]).sum())
         return 0.5 * found
 
-    def nodal(self, values: Array, load: Array | None = None) -> Array:
+    def nodal(self, values: Array, load: Array | None = None, given: Array | None = None) -> Array:
         """Displacements of the nodes for values of the particles, (components, s).
 
         Parameters
@@ -242,19 +252,22 @@ class SurfaceStiffness:
         values : ndarray, shape (components, p)
         load : ndarray, shape (components, nodes of the outline), optional
             Forces on the nodes per volume of a particle.
+        given : ndarray, shape (components, nodes of the outline), optional
+            Values of held nodes, if others than those of the bonds.
         """
-        force = -(self._free_coupling @ values.ravel()) + self._force(load)
+        force = -(self._free_coupling @ values.ravel()) + self._force(load, given)
         return np.asarray(self._spread_out(self._lu.solve(force)).reshape(self.components, -1))
 
-    def _force(self, load: Array | None) -> Array:
+    def _force(self, load: Array | None, given: Array | None = None) -> Array:
         """Right-hand side of the nodes for loads and prescribed values, shape (free,)."""
         if load is None:
             force = np.zeros(len(self.held))
         else:
             force = self._gathered(load[:, self.nodes].ravel())
         if self.held.any():
-            force = force - self._whole @ self.given
-            force[self.held] = self._scale * self.given[self.held]
+            values = self.given if given is None else self._prescribed(given)
+            force = force - self._whole @ values
+            force[self.held] = self._scale * values[self.held]
         return force
 
     def reaction(self, values: Array) -> Array:
@@ -262,9 +275,12 @@ class SurfaceStiffness:
         nodes = self._lu.solve(-(self._free_coupling @ values.ravel()))
         return np.asarray((self._back @ nodes).reshape(values.shape))
 
-    def condensed_load(self, load: Array) -> Array:
-        """−K_ps K_ss⁻¹ f: loads of the particles that replace those of the nodes, on the left."""
-        nodes = self._lu.solve(self._force(load))
+    def condensed_load(self, load: Array, given: Array | None = None) -> Array:
+        """−K_ps K_ss⁻¹ f: loads of the particles that replace those of the nodes, on the left.
+
+        `given` are values of held nodes, if others than those of the bonds; see `nodal`.
+        """
+        nodes = self._lu.solve(self._force(load, given))
         return (self._back @ nodes).reshape(self.components, -1)
 
     def condensed(self, basis: sparse.csr_array) -> sparse.csr_array:
@@ -446,10 +462,16 @@ class Layers(NamedTuple):
         Twice the energy for a strain of one along each edge.
     strain : sparse, shape (strains·e, components·s)
         These strains of the nodes' values.
+    edges : ndarray of int, shape (e,)
+        Of the outline.
+    along : ndarray, shape (2, e)
+        Their directions.
     """
 
     weight: Array
     strain: sparse.csr_array
+    edges: Indices
+    along: Array
 
     @property
     def stiffness(self) -> sparse.csc_array:
@@ -516,7 +538,7 @@ def interface_layers(
     order = np.argsort(key)
     found = order[np.minimum(np.searchsorted(key[order], back), len(order) - 1)]
     twin = np.where(key[found] == back, found, np.arange(len(edges)))
-    return Layers(weight, strain), twin
+    return Layers(weight, strain, edges, along / length), twin
 
 
 def _stiffness_of_skin(skin: Membrane | None, shape: tuple[int, int]) -> sparse.csc_array:

@@ -305,8 +305,8 @@ class Load:
     electrode : Region or callable, optional
         Of a lead (`lead`), which must lie in the body and touch no other.
     strain : callable, optional
-        Of a temperature: places, whether they are the surface's nodes → the strain (ε11, ε22,
-        2 ε12) that it would cause without stress, (n, 3).
+        Of a temperature: places, whether they are the surface's nodes, another solid's expansion
+        → the strain (ε11, ε22, 2 ε12) that it would cause without stress, (n, 3).
     """
 
     kind: str
@@ -314,7 +314,7 @@ class Load:
     edge: Callable[[Outline, Point], Quadrature] | None = None
     points: Callable[[float], tuple[Array, Array]] | None = None
     electrode: Where | None = None
-    strain: Callable[[Array, bool], Array] | None = None
+    strain: Callable[..., Array] | None = None
     instant: Callable[[float], Load] | None = None
 
     @property
@@ -399,7 +399,8 @@ class Load:
         ----------
         change : value
         expansion : ExpansionTensor
-            In plane strain the plane's effective one.
+            Of the scene's own solid (inclusions bring theirs); in plane strain the plane's
+            effective one.
         at_surface : value, optional
             The change at the surface's nodes where `change` is one value a particle and bonds end
             at the surface (``extrapolated``): `State.surface_temperature` of the conduction
@@ -410,14 +411,15 @@ class Load:
                 f"a temperature needs the solid's ExpansionTensor, not {type(expansion).__name__}"
             )
 
-        def strain(places: Array, surface: bool) -> Array:
+        def strain(places: Array, surface: bool, other: ExpansionTensor | None = None) -> Array:
             value = change if not surface or at_surface is None else at_surface
             if surface and not callable(value) and np.ndim(value) and at_surface is None:
                 raise SceneError(
                     "a temperature of one value a particle says nothing of the surface, where "
                     "bonds end: give at_surface, or a function of (x, y)"
                 )
-            return evaluate(value, places, 1, "a temperature") * expansion.voigt
+            own = expansion if other is None else other
+            return evaluate(value, places, 1, "a temperature") * own.voigt
 
         if in_time(change) or in_time(at_surface):
             raise SceneError("a temperature that strains a body is known to statics only: f(x, y)")

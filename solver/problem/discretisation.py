@@ -61,6 +61,8 @@ class Discretisation:
         Of temperatures; the loads hold what it exerts.
     acting : ndarray, shape (components, N), optional
         `load` without what temperatures exert, where there are any.
+    edge_values : ndarray, shape (components, nodes of the outline), optional
+        Values at which nodes are held, if others than those of the bonds: at another time.
     """
 
     scene: Description
@@ -78,6 +80,7 @@ class Discretisation:
     constraints: Constraints | None = None
     eigenstrain: Eigenstrain | None = None
     acting: Array | None = None
+    edge_values: Array | None = None
 
     @classmethod
     def of(
@@ -287,7 +290,8 @@ class Discretisation:
         exerted = operator.coupling(self.values) if coupling is None else coupling
         rhs = self.load[:, operator.active] - exerted
         if operator.ended_stiffness is not None and self.nodal_load is not None:
-            operator.add_at_surface(rhs, -operator.ended_stiffness.condensed_load(self.nodal_load))
+            condensed = operator.ended_stiffness.condensed_load(self.nodal_load, self.edge_values)
+            operator.add_at_surface(rhs, -condensed)
         if operator.identity_rows is not None:
             given = self.values[:, operator.active]
             rhs[operator.identity_rows] = operator.identity_scale * given[operator.identity_rows]
@@ -304,7 +308,8 @@ class Discretisation:
         surface = self.operator.ended_stiffness
         if surface is None:
             return None
-        return surface.nodal(np.nan_to_num(unknowns[:, surface.particles]), self.nodal_load)
+        near = np.nan_to_num(unknowns[:, surface.particles])
+        return surface.nodal(near, self.nodal_load, self.edge_values)
 
     def field(self, x: Array) -> Array:
         """Values of all unknowns, shape (components, N), from a vector of the active ones."""
@@ -341,8 +346,7 @@ def _supports(scene: Description, lattice: Lattice, moduli: Moduli) -> tuple[Mas
 
 def _hold_edges(scene: Description, bonds: Bonds, moduli: Moduli) -> None:
     """Prescribe the nodes of the outline that supports of the edge hold, in `bonds`."""
-    supports = [s for s in scene.supports if s.nodes is not None]
-    if not supports:
+    if all(support.nodes is None for support in scene.supports):
         return
     if scene.surface != "extrapolated":
         raise SceneError(
@@ -351,11 +355,21 @@ def _hold_edges(scene: Description, bonds: Bonds, moduli: Moduli) -> None:
         )
     if bonds.ended is None:
         raise SceneError("a support of the edge holds nothing: no bond ends at the body's edge")
-    outline, shift = bonds.ended.outline, bonds.lattice.shift
+    bonds.ended = bonds.ended.holding(
+        *edge_values(scene, bonds.ended.outline, bonds.lattice, moduli)
+    )
+
+
+def edge_values(
+    scene: Description, outline: Outline, lattice: Lattice, moduli: Moduli
+) -> tuple[Mask, Array]:
+    """Components of the outline's nodes that are held, and at what, both (components, nodes)."""
+    shift = lattice.shift
     held = np.zeros((moduli.components, len(outline.nodes)), dtype=bool)
     given, scales = np.zeros(held.shape), moduli.scales(scene.spacing)
-    for support in supports:
-        assert support.nodes is not None
+    for support in scene.supports:
+        if support.nodes is None:
+            continue
         chosen = support.nodes(outline, shift)
         if not chosen.any():
             raise SceneError("a support of the edge holds no node: its region misses the edge")
@@ -366,7 +380,7 @@ def _hold_edges(scene: Description, bonds: Bonds, moduli: Moduli) -> None:
             found = evaluate(value, places, width, "a prescribed value")
             held[unknown, chosen] = True
             given[unknown, chosen] = scales[unknown] * found[:, component]
-    bonds.ended = bonds.ended.holding(held, given)
+    return held, given
 
 
 def _loads(scene: Description, lattice: Lattice, moduli: Moduli) -> Array:
@@ -510,15 +524,21 @@ def _eigenstrain(
     acting = [item.strain for item in scene.loads if item.strain is not None]
     if not acting:
         return None
-    surface = operator.ended_stiffness
-    particles = sum(strain(lattice.places, False).T for strain in acting)
+    surface, phases = operator.ended_stiffness, operator.bonds.phases
+    solids = [None, *(inclusion.expansion for inclusion in scene.inclusions)]
+    each = [sum(strain(lattice.places, False, own).T for strain in acting) for own in solids]
+    particles = np.asarray(each[0])
+    if phases is not None:
+        particles = np.stack(each)[phases.of, :, np.arange(lattice.count)].T
     nodes = None
     if surface is not None:
         at = surface.ended.outline.nodes + lattice.centred.shift
         # Nodes at which no bond ends feel nothing: a value a node is one of those that do.
-        nodes = np.zeros((3, len(at)))
-        nodes[:, surface.nodes] = sum(strain(at[surface.nodes], True).T for strain in acting)
-    found = Eigenstrain(operator.bonds, operator.moduli, np.asarray(particles), nodes)
+        nodes = np.zeros((len(solids), 3, len(at)))
+        for k, own in enumerate(solids):
+            felt = sum(strain(at[surface.nodes], True, own).T for strain in acting)
+            nodes[k][:, surface.nodes] = felt
+    found = Eigenstrain(operator.bonds, operator.moduli, particles, nodes)
     load += found.load()
     if surface is not None and nodal_load is not None:
         on_particles, on_nodes = found.surface_load(surface)

@@ -22,6 +22,7 @@ from .discretisation import (
     _moved,
     _share_out,
     _supports,
+    edge_values,
 )
 
 _REMEMBERED = 4
@@ -36,23 +37,14 @@ class Forcing:
         Of ``scene.at(t)`` for some t.
     scene : Description
         The scene with its functions of time.
-
-    Raises
-    ------
-    SceneError
-        If nodes of the surface are held at values that depend on time.
     """
 
     def __init__(self, body: Discretisation, scene: Description) -> None:
         self.body, self.scene = body, scene
         self.moving = any(support.timed for support in scene.supports)
         self.driven = any(load.timed for load in scene.loads)
-        for support in scene.supports:
-            if support.timed and getattr(support, "nodes", None) is not None:
-                raise SceneError(
-                    "values held at the body's edge cannot depend on time: hold a layer of "
-                    "particles, or let a traction (a flux) do it"
-                )
+        #: Whether nodes of the surface are held at values that depend on time.
+        self.edge_moves = any(s.timed for s in scene.supports if s.nodes is not None)
         self._outline: Outline | None = None
         near = body.lattice.centred
         self._cracks = _moved(scene.cracks, body.lattice)
@@ -81,6 +73,7 @@ class Forcing:
             return self._now
         body, scene = self.body, self.scene.at(time)
         values, load, nodal = body.values, body.load, body.nodal_load
+        edge = self._edge_values(scene)
         if self.moving:
             _, found = _supports(scene, body.lattice, body.moduli)
             values = np.where(np.isnan(body.values), np.nan, found)
@@ -100,8 +93,16 @@ class Forcing:
                     f"at t = {time:g} s a load acts on a part that was set aside: hold it, or "
                     f"leave it out of the load (where=...)"
                 )
-        self._now, self._time = replace(body, values=values, load=load, nodal_load=nodal), time
+        self._now = replace(body, values=values, load=load, nodal_load=nodal, edge_values=edge)
+        self._time = time
         return self._now
+
+    def _edge_values(self, scene: Description) -> Array | None:
+        """Values of held nodes as they are in a scene of one time, if they depend on time."""
+        ended = self.body.bonds.ended
+        if not self.edge_moves or ended is None:
+            return None
+        return edge_values(scene, ended.outline, self.body.lattice.centred, self.body.moduli)[1]
 
     def values(self, time: float) -> Array:
         """Prescribed values, shape (components, N); zero where free, NaN where set aside."""
@@ -123,6 +124,30 @@ class Forcing:
         if self._coupling is None:
             self._coupling = self.body.operator.coupling(self.body.values)
         return now.right_hand_side(self._coupling)
+
+    def of_velocity(self, early: float, late: float) -> Array:
+        """What prescribed values exert by their mean velocity between two times, on the left.
+
+        Minus K_fp ġ: the part of damping β K that comes from supports which move, over β; shape
+        (components·active,).
+        """
+        before, after = self.at(early), self.at(late)
+        span, body = late - early, self.body
+        still, edge = None, None
+        if (ended := body.bonds.ended) is not None:
+            still = np.zeros((body.moduli.components, len(ended.outline.nodes)))
+            if before.edge_values is None or after.edge_values is None:
+                edge = still if ended.held is not None else None
+            else:
+                edge = (after.edge_values - before.edge_values) / span
+        moved = replace(
+            body,
+            values=np.nan_to_num(after.values - before.values) / span,
+            load=np.zeros_like(body.load),
+            nodal_load=still,
+            edge_values=edge,
+        )
+        return moved.right_hand_side()
 
     def check(self, times: Array) -> None:
         """Evaluate everything at some times: wrong shapes and values come before any work."""

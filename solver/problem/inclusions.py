@@ -15,6 +15,7 @@ from ..geometry.phases import moved
 from ..material import (
     AngularLaw,
     Calibration,
+    ExpansionTensor,
     Family,
     Material,
     Mixture,
@@ -45,6 +46,8 @@ class Inclusion:
         J/(m³ K); that of the scene by default.
     thickness : float, optional
         m; that of the scene by default. A groove is an inclusion of the same material.
+    expansion : ExpansionTensor, optional
+        What it expands by under the scene's temperatures, which then it needs.
     """
 
     region: Region
@@ -52,8 +55,14 @@ class Inclusion:
     density: float | None = None
     heat_capacity: float | None = None
     thickness: float | None = None
+    expansion: ExpansionTensor | None = None
 
     def __post_init__(self) -> None:
+        if not (self.expansion is None or isinstance(self.expansion, ExpansionTensor)):
+            raise SceneError(
+                f"the expansion of an inclusion must be an ExpansionTensor, not "
+                f"{type(self.expansion).__name__}"
+            )
         if not isinstance(self.region, Region):
             raise SceneError(
                 f"the region of an inclusion must be a Region, not {type(self.region).__name__}"
@@ -115,10 +124,12 @@ def check(scene: _Scene) -> None:
         )
     if scene.inclusions and scene.factors is not None:
         raise SceneError("factors on single bonds are not known in a body with inclusions")
-    if scene.inclusions and any(load.strain is not None for load in scene.loads):
+    if any(load.strain is not None for load in scene.loads) and any(
+        inclusion.expansion is None for inclusion in scene.inclusions
+    ):
         raise SceneError(
-            "temperatures that strain a body (Load.temperature) know one solid: the scene has "
-            "inclusions"
+            "a temperature strains every solid of a body: an inclusion needs its expansion "
+            "(Inclusion(..., expansion=ExpansionTensor))"
         )
 
 

@@ -235,6 +235,20 @@ def test_conductors_of_current_and_temperatures(tmp_path):
     (tmp_path / "hot.toml").write_text(hot)
     assert scene_file.request(tmp_path / "live.toml").run().fields()["potential"].max() > 0
     assert scene_file.request(tmp_path / "hot.toml").run().fields()["stress22"].std() > 1e-4
+    bimetal = (
+        hot
+        + """
+    [[inclusion]]
+    region = {shape = "rectangle", width = 1.0, height = 0.5, centre = [0.0, 0.25]}
+    material = {kind = "isotropic", E = 3.0, nu = 0.2}
+    expansion = [[2e-3, 0], [0, 1e-3]]
+    """
+    )
+    (tmp_path / "bimetal.toml").write_text(bimetal)
+    assert scene_file.request(tmp_path / "bimetal.toml").run().fields()["stress22"].std() > 1e-4
+    (tmp_path / "bimetal.toml").write_text(bimetal.replace("expansion = [[2e-3", "#"))
+    with pytest.raises(SceneFileError, match="an inclusion needs its expansion"):
+        scene_file.request(tmp_path / "bimetal.toml")
     (tmp_path / "both.toml").write_text(live.replace("potential", "temperature"))
     with pytest.raises(SceneFileError, match="no temperature to prescribe"):
         scene_file.request(tmp_path / "both.toml")

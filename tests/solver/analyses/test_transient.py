@@ -344,3 +344,25 @@ def test_capacity_belongs_to_conduction_and_is_positive():
         plain(material=ElasticTensor.isotropic(1.0, 0.3))
     with pytest.raises(SceneError, match="a conductive body has no density"):
         plain(density=1.0)
+
+
+def test_an_edge_whose_temperature_changes():
+    """T = x²/2 + (D/c) t in a strip held at both ends' edges: a polynomial, but for the rim."""
+    exact = lambda x, y, t: 0.5 * x * x + 1.5 * t / CAPACITY + 0 * y  # noqa: E731
+    errors = []
+    for n in (10, 20):
+        scene = Scene(
+            region=rectangle(1.0, 0.5),
+            spacing=1 / n,
+            m=2,
+            material=ConductivityTensor.isotropic(1.5),
+            heat_capacity=CAPACITY,
+            surface="extrapolated",
+            supports=[Support.edge(lambda x, y: abs(x) > 0.5 - 1e-9, temperature=exact)],
+        )
+        run = transient.run(scene, lambda x, y: exact(x, y, 0.0), [0.3], tolerance=1e-6)
+        errors.append(np.abs(run.temperature[-1] - exact(*run.points.T, 0.3)).max())
+        assert run.surface_temperature().max() == pytest.approx(exact(0.5, 0.0, 0.3), abs=2e-3)
+        assert run.statistics.balance < 1e-10
+    assert errors[1] < 1e-3
+    assert errors[0] / errors[1] > 2.5, errors

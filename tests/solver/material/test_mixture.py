@@ -60,3 +60,5 @@ def test_solids_that_do_not_go_together():
     with pytest.raises(InadmissibleMaterialError, match="of different kinds"):
         together(tuple(kinds))
     assert together((kinds[0], kinds[0])) is kinds[0]
+    with pytest.raises(SceneError, match="different unknowns"):
+        together((kinds[0], assess(FAMILY, central)))

@@ -11,6 +11,7 @@ from solver import (
     Crack,
     ElasticTensor,
     ExpansionTensor,
+    Inclusion,
     Load,
     PolarTensor,
     Scene,
@@ -88,6 +89,29 @@ def test_uniform_and_linear_temperatures_leave_a_free_body_without_stress(surfac
     strain = 0.5 * (gradient + gradient.swapaxes(1, 2))
     wanted = np.broadcast_to(1.3 * expansion.matrix, strain.shape)
     np.testing.assert_allclose(strain, wanted, atol=1e-9)
+
+
+@pytest.mark.parametrize("change", [1.3, oblique])
+def test_two_solids_that_expand_alike_are_free_of_stress(change):
+    """Stiff in soft, across an oblique interface: free expansion does not ask for stiffness."""
+    expansion, soft = tensor(5), ElasticTensor.isotropic(1.0, 0.2)
+    wedge = Inclusion(
+        polygon([(-0.2, -0.6), (0.6, -0.6), (0.6, 0.7), (0.1, 0.7)]),
+        ElasticTensor.isotropic(4.0, 0.1),
+        expansion=expansion,
+    )
+    for surface in SURFACES:
+        solution = heated(soft, change, expansion, surface=surface, inclusions=[wedge])
+        assert np.abs(recovery.stress(solution)).max() < 4e-10 * size(soft, expansion)
+    # A solid that expands by itself bears stress, and one that does not say how it expands is no
+    # part of a heated body.
+    other = replace(wedge, expansion=tensor(6))
+    found = heated(soft, change, expansion, surface="extrapolated", inclusions=[other])
+    assert np.abs(recovery.stress(found)).max() > 1e-2 * size(soft, expansion)
+    with pytest.raises(SceneError, match="an inclusion needs its expansion"):
+        heated(soft, change, expansion, inclusions=[replace(wedge, expansion=None)])
+    with pytest.raises(SceneError, match="must be an ExpansionTensor"):
+        replace(wedge, expansion=1e-5)
 
 
 def test_plane_strain_is_free_of_stress_in_the_plane():

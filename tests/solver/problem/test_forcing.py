@@ -61,6 +61,46 @@ def test_at_any_time_it_is_the_scene_of_that_time(scene, surface):
             np.testing.assert_allclose(found.nodal_load, then.nodal_load, atol=1e-13)
 
 
+def shaken():
+    """Held within and at its very edge, at values in time, under loads that stay."""
+    return Scene(
+        region=rectangle(1.0, 0.8, angle=0.2),
+        spacing=0.1,
+        m=2,
+        material=ElasticTensor.isotropic(1.0, 0.2),
+        surface="extrapolated",
+        supports=[
+            Support.where(lambda x, y: x < -0.3, u1=lambda x, y, t: np.sin(t) * y),
+            Support.edge(lambda x, y: x > 0.3, u1=0.1, u2=lambda x, y, t: t * t * x),
+        ],
+        loads=[Load.body_force((1.0, 2.0)), Load.couple(0.3)],
+    )
+
+
+def test_an_edge_that_moves_is_that_of_the_scene_then():
+    scene = shaken()
+    forcing = Forcing(Discretisation.of(scene.at(0.0), free=True), scene)
+    for time in (0.7, 0.0, 2.5):
+        then = Discretisation.of(scene.at(time), free=True)
+        np.testing.assert_allclose(
+            forcing.right_hand_side(time), then.right_hand_side(), rtol=1e-11, atol=1e-12
+        )
+        field = np.cos(np.arange(then.values.size)).reshape(then.values.shape)
+        np.testing.assert_allclose(
+            forcing.at(time).surface_values(field), then.surface_values(field), atol=1e-11
+        )
+
+
+def test_what_velocities_exert_is_the_change_of_what_values_exert():
+    scene = shaken()
+    forcing = Forcing(Discretisation.of(scene.at(0.0), free=True), scene)
+    early, late = 0.4, 0.9
+    change = forcing.right_hand_side(late) - forcing.right_hand_side(early)
+    found = forcing.of_velocity(early, late) * (late - early)
+    assert np.abs(found).max() > 1e-3
+    np.testing.assert_allclose(found, change, atol=1e-11 * np.abs(change).max())
+
+
 def test_what_does_not_depend_on_time_is_made_once():
     scene = Scene(
         region=rectangle(1.0, 1.0),
