@@ -403,7 +403,10 @@ class _March:
             np.abs(self.solver.solve(shift, np.asarray(defect) / _D, zero, 1e-3)).max(initial=0.0)
         )
         x = self.x + change
-        low, high = min(self.low, float(x.min())), max(self.high, float(x.max()))
+        low, high = (
+            float(x.min(initial=self.low)),
+            float(x.max(initial=self.high)),
+        )
         allowed = self.tolerance * (high - low)
         ratio = 1.0 if error == 0.0 else _SAFETY * (allowed / error) ** (1 / 3)
         if not np.isfinite(error):

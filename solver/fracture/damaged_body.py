@@ -298,9 +298,9 @@ class Equilibrium:
         self.rhs = self.border = None
         if self._resuming:
             return
+        self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
         if self._unloaded():
             raise MechanismError("a crack has run through an edge that carries a load")
-        self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
         self.released_by_parting += before - self._surface_potential()
 
     def resume(self, aside: Mask, built: int) -> BondOperator:
@@ -334,15 +334,16 @@ class Equilibrium:
         unknowns = self.unknowns
         self.aside[particles] = True
         self._bonds = self.bonds.without_ends(particles)
+        # Whole before anything is refused: whoever ends the run looks at what it has come to.
+        self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
+        self.rhs = self.border = None
+        self.x = unknowns[:, self.operator.active].ravel()
+        self.preconditioner = None
         acting = self.sound.load if self.sound.acting is None else self.sound.acting
         if acting[:, self.aside].any() or self._unloaded():
             raise MechanismError("a part on which a load acts has come loose")
         if self.prescribed.all():
             raise MechanismError("all of the body that was free has come loose")
-        self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
-        self.rhs = self.border = None
-        self.x = unknowns[:, self.operator.active].ravel()
-        self.preconditioner = None
 
     def _unloaded(self) -> bool:
         """Whether loads act on nodes at which no bond ends any more."""

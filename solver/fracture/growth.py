@@ -250,6 +250,11 @@ class Growth(Result):
         self.ledger.opened()
         self.ledger.move(0.0, self.load_factor)
         self.record()
+        if self.ledger.unstrained and self.body.unknowns.any():
+            self.reason = (
+                "the load moves the body and does not strain it: the parts that it moves are not "
+                "joined (a crack runs right through?), or move as one"
+            )
 
     def proceed(self) -> None:
         """On to the next equilibrium: a batch of bonds breaks, or the load changes."""

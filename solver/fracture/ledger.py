@@ -12,6 +12,9 @@ from .damaged_body import Equilibrium, Step
 
 # Share of the sound body's energy at unit load that is the solver's noise: one bond holds 1e-6.
 _PARTED = 1e-10
+# Share of the energy of particles that move alone that is rounding, and how many times its
+# tolerance the solver may leave in a strain.
+_RIGID, _TIMES = 1e-15, 3.0
 
 
 class Ledger:
@@ -35,6 +38,19 @@ class Ledger:
     def opened(self) -> None:
         """The first equilibrium at unit load is known."""
         self.deflection, self.whole = self._load_work(), self._stored()
+
+    @property
+    def unstrained(self) -> bool:
+        """Whether the load moves the body and does not strain it, up to the solver's noise.
+
+        Judged by what its springs would store if each particle moved alone: of that a bar of 10⁴
+        cells, pulled, holds 1e-8, and a cantilever of 1000 × 5 cells 1e-11.
+        """
+        operator = self.body.operator
+        alone = np.abs(np.diagonal(operator.bulk_blocks, axis1=1, axis2=2)).max(axis=0)
+        moved = (alone @ np.nan_to_num(self.body.unknowns) ** 2).sum()
+        noise = max(_RIGID, (_TIMES * self.body.tolerance) ** 2)
+        return abs(self._stored()) <= noise * float(moved) * self.body.sound.family.cell_area
 
     @property
     def unloaded(self) -> bool:

@@ -15,6 +15,7 @@ thread. The kernels themselves do not depend on theirs.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal, get_args
 
 import numpy as np
@@ -30,6 +31,8 @@ Preconditioner = Literal["auto", "two-level", "block-jacobi"]
 
 # Roundings of a row of the product that add up in its sum.
 _ROUNDINGS = 4.0
+# Largest entries of right-hand sides that are solved as they are.
+_PLAIN = 1e-60, 1e60
 # Below this many unknowns block Jacobi needs less time than the set-up of two levels.
 _TWO_LEVEL = 2_000
 
@@ -96,6 +99,13 @@ def iterate(
     """
     if not task.rhs.any():
         return np.zeros_like(task.rhs), 0
+    size = float(np.abs(task.rhs).max())
+    if not _PLAIN[0] < size < _PLAIN[1]:
+        # Products of what is left of it would leave the range of numbers. A power of two is exact.
+        unit = 2.0 ** np.floor(np.log2(size))
+        scaled = replace(task, rhs=task.rhs / unit, guess=task.guess / unit)
+        x, count = iterate(operator, kind, preconditioner, scaled, border)
+        return x * unit, count
     if border is not None:
         return bordered_gradients(operator, kind, preconditioner, border, task)
     if kind == "indefinite":

@@ -109,6 +109,9 @@ class Shifted:
         ------
         ConvergenceError, NegativeCurvatureError
         """
+        if not len(rhs):
+            # Every particle is prescribed.
+            return np.zeros(0)
         if self.anchor is None or not 1 / _KEEP <= shift / self.anchor <= _KEEP:
             self._make(shift)
         matrix, inverse = self.matrix(shift), self._inverse

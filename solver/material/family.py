@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
+from ..magnitude import LENGTHS, outside
 from .influence import CONSTANT, Influence, influence
 
 AreaRule = Literal["full", "partial", "exact"]
@@ -87,6 +88,8 @@ class Family:
             raise ValueError(f"the horizon must be at least one cell: m = {self.m}")
         if not (np.isfinite(self.spacing) and self.spacing > 0):
             raise ValueError(f"the grid spacing must be positive: {self.spacing}")
+        if wrong := outside(self.spacing, LENGTHS):
+            raise ValueError(f"the grid spacing is {wrong}")
         if self.area_rule not in get_args(AreaRule):
             raise ValueError(
                 f"unknown area rule {self.area_rule!r}; known: {', '.join(get_args(AreaRule))}"

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
+from ..magnitude import MODULI, outside
 from .physics import ELASTICITY, ELECTRICITY, HEAT, Physics
 
 Plane = Literal["stress", "strain"]
@@ -28,8 +29,11 @@ def _validated(values: ArrayLike, size: int, what: str) -> Array:
     if not np.all(np.isfinite(array)):
         raise ValueError(f"{what} has entries that are not finite:\n{array}")
     scale = np.abs(array).max()
-    if scale == 0.0 or np.abs(array - array.T).max() > _SYMMETRY_TOLERANCE * scale:
+    half = 0.5 * array
+    if scale == 0.0 or np.abs(half - half.T).max() > 0.5 * _SYMMETRY_TOLERANCE * scale:
         raise ValueError(f"{what} must be symmetric and not zero:\n{array}")
+    if wrong := outside(float(scale), MODULI):
+        raise ValueError(f"{what} is {wrong}")
     array = 0.5 * (array + array.T)
     smallest, largest = np.linalg.eigvalsh(array)[[0, -1]]
     if smallest <= 1e-14 * largest:
@@ -118,6 +122,9 @@ class ElasticTensor:
         """
         if not all(np.isfinite(v) and v > 0.0 for v in (E1, E2, G12)):
             raise ValueError(f"moduli must be positive: E1={E1}, E2={E2}, G12={G12}")
+        for modulus in (E1, E2, G12):
+            if wrong := outside(modulus, MODULI):
+                raise ValueError(f"a modulus is {wrong}")
         compliance = np.array(
             [[1 / E1, -nu12 / E1, 0.0], [-nu12 / E1, 1 / E2, 0.0], [0.0, 0.0, 1 / G12]]
         )

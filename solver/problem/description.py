@@ -14,6 +14,7 @@ from ..arrays import Mask
 from ..bonds import Bonds, Factors, Surface, check_surface
 from ..errors import SceneError
 from ..geometry import Crack, Lattice, Region
+from ..magnitude import MODULI, outside
 from ..material import (
     CONSTANT,
     AngularLaw,
@@ -140,6 +141,8 @@ class Description:
             what = name.replace("_", " ")
             if not (real and 0.0 < given < float("inf")):
                 raise SceneError(f"the {what} must be positive ({unit}), not {given!r}")
+            if wrong := outside(float(given), MODULI):
+                raise SceneError(f"the {what} is {wrong}")
             if name != self.physics.storage:
                 raise SceneError(f"{self.physics.adjective} body has no {what}")
         for load in self.loads:

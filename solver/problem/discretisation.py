@@ -26,6 +26,7 @@ from ..geometry import (
     on_particles,
     volumes,
 )
+from ..magnitude import STRAINS, outside
 from ..material import Family, Moduli, Stability
 from ..operators import BondOperator
 from ..operators.eigenstrain import Eigenstrain
@@ -192,6 +193,7 @@ class Discretisation:
             )
         acting = load.copy() if any(item.strain is not None for item in scene.loads) else None
         eigenstrain = _eigenstrain(scene, lattice, operator, load, nodal_load)
+        _within_range(operator, values, load, nodal_load)
         seconds = perf_counter() - begun
         return cls(
             scene,
@@ -381,6 +383,24 @@ def edge_values(
             held[unknown, chosen] = True
             given[unknown, chosen] = scales[unknown] * found[:, component]
     return held, given
+
+
+def _within_range(
+    operator: BondOperator, values: Array, load: Array, nodal_load: Array | None
+) -> None:
+    """Refuse loads and prescribed values whose squares are no numbers any more."""
+    spacing = operator.bonds.family.spacing
+    stiffness = float(np.abs(operator.bulk_blocks).max())
+    for what, array, unit in (
+        ("what is prescribed", values, spacing),
+        ("the load", load, stiffness * spacing),
+        ("the load on the edge", nodal_load, stiffness * spacing),
+    ):
+        if array is None:
+            continue
+        largest = float(np.nanmax(np.abs(array), initial=0.0))
+        if wrong := outside(largest / unit, STRAINS):
+            raise SceneError(f"{what} strains cells by amounts {wrong}")
 
 
 def _loads(scene: Description, lattice: Lattice, moduli: Moduli) -> Array:

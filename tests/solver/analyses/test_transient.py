@@ -156,6 +156,15 @@ def test_heat_balances_and_supports_give_what_their_own_rows_say():
     np.testing.assert_allclose(run.supplied[-1], fine.supplied[-1], rtol=1e-3)
 
 
+def test_where_nothing_is_free_values_are_as_prescribed():
+    held = Support.where(lambda x, y: x == x, temperature=lambda x, y, t: x + t)
+    scene = Scene(
+        rectangle(1, 1), 0.1, ConductivityTensor(DISC), [held], m=2, heat_capacity=CAPACITY
+    )
+    run = transient.run(scene, 0.0, [0.5, 1.0], step=0.5)
+    np.testing.assert_allclose(run.temperature[-1], run.points[:, 0] + 1.0, atol=1e-14)
+
+
 def test_a_rough_start_is_damped():
     """Cold body, hot rim: nothing leaves the range, however long the steps."""
     scene = Scene(

@@ -303,6 +303,45 @@ def test_an_edge_crack_runs_through_and_the_run_ends(angle, surface):
     assert np.ptp(u[there], axis=0).max() <= 1e-6 * np.abs(u[there]).max()
 
 
+@pytest.mark.parametrize("control", ["fixed", "following"])
+@pytest.mark.parametrize("surface", ["none", "volume", "extrapolated"])
+def test_a_strip_that_was_cut_right_through_is_in_two_from_the_start(surface, control):
+    """Each half moves as one: what strains bonds is rounding, and breaks none of them."""
+    ends = Support.where(
+        lambda x, y: abs(y) > 4, displacement=lambda x, y: np.sign(y)[:, None] * [0.0, 1.0]
+    )
+    cut = Scene(
+        rectangle(24, 12),
+        1.0,
+        SOFT,
+        [ends],
+        m=3,
+        surface=surface,
+        cracks=[Crack((-14, 0), (14, 0))],
+    )
+    run = fracture.grow(cut, 1e-3, Programme(control=control), max_solves=50)
+    assert "moves the body and does not strain it" in run.reason
+    assert len(run.broken_bonds) == 0
+    assert len(run.history.work) == 1
+    # A slender body strains little, and is loaded all the same.
+    left = Support.where(lambda x, y: x < -97, displacement=0.0)
+    beam = Scene(rectangle(200, 4), 1.0, SOFT, [left], [Load.point((0.0, 1.0), (99.0, 0.0))], m=2)
+    assert fracture.grow(beam, 1.0, max_solves=1).reason == "1 solves are done"
+
+
+def test_a_run_that_loads_end_can_be_looked_at():
+    """The part that came loose carries the load; its bonds to the surface went with it."""
+    held = Support.where(lambda x, y: x < 0, displacement=0.0, rotation=0.0)
+    scene = Scene(
+        rectangle(2, 1), 1.0, SOFT, [held], [Load.stress((1.0, 0.0, 0.0))], m=1,
+        surface="extrapolated",
+    )  # fmt: skip
+    run = fracture.grow(scene, 1.0, max_solves=4)
+    assert "come loose" in run.reason
+    assert np.isnan(run.fields()["displacement"]).any()
+    assert len(run.broken_bonds) == 1
+
+
 def test_a_body_in_two_ends_the_run():
     # What the solver leaves of a force between the halves breaks nothing.
     for control in ("fixed", "following"):

@@ -45,6 +45,20 @@ def test_iterate_solves_positive_and_indefinite_bodies(poisson, kind):
     np.testing.assert_allclose(x, direct, atol=1e-8 * np.abs(direct).max())
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("size", [2.0**-900, 2.0**-300, 2.0**300, 2.0**900])
+@pytest.mark.parametrize(("poisson", "kind"), [(0.2, "positive"), (0.45, "indefinite")])
+def test_the_load_s_size_makes_no_difference(size, poisson, kind):
+    body = operator(poisson)
+    rhs = np.random.default_rng(1).normal(size=body.shape[0])
+    inverse = method.preconditioner(body, kind)
+    x, count = method.iterate(body, kind, inverse, Task(rhs, 0 * rhs, 1e-9, 2000))
+    rhs *= size
+    scaled, again = method.iterate(body, kind, inverse, Task(rhs, 0 * rhs, 1e-9, 2000))
+    assert abs(again - count) <= 1
+    np.testing.assert_allclose(scaled / size, x, atol=1e-7 * np.abs(x).max())
+
+
 def test_nothing_to_solve():
     body = operator()
     zero = np.zeros(body.shape[0])

@@ -1,0 +1,26 @@
+"""How large numbers may be: units far from the body's own leave the range of double precision.
+
+Norms square what they measure, and calibrations and eigenvalues multiply three moduli or divide by
+powers of the spacing. Within these bounds no product leaves 1e±308; any unit in use stays far
+within them.
+"""
+
+from __future__ import annotations
+
+#: Moduli, densities and capacities, in any unit.
+MODULI = (1e-50, 1e50)
+#: Spacings, in any unit.
+LENGTHS = (1e-30, 1e30)
+#: What a load or a prescribed value makes of a cell, as a strain (or difference over its size).
+STRAINS = (1e-100, 1e100)
+
+
+def outside(size: float, bounds: tuple[float, float]) -> str:
+    """In words, what is wrong with a size; empty if nothing is, or if it is zero."""
+    low, high = bounds
+    if size == 0.0 or low <= size <= high:
+        return ""
+    return (
+        f"of the size {size:.1e}, not between {low:g} and {high:g}: its squares and products would "
+        f"leave the range of numbers; choose other units"
+    )
