@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from .arrays import Array
 from .bonds.cells import Cells
 
-# Scalars that are continuous: unknowns, by the last word of their names.
+# Scalars that are continuous: unknowns, by the ends of their names.
 _SMOOTH = ("rotation", "temperature", "potential")
 #: Of the .npz files: raised when a key changes its name, shape or unit.
 FORMAT = 1
@@ -142,7 +142,7 @@ def vtk_mesh(
             else ("triangle", np.asarray(triangles))
         )
         return meshio.Mesh(_solid(points), [kind], point_data=_padded(arrays))
-    smooth = {k: v for k, v in arrays.items() if v.ndim == 2 or k.split()[-1] in _SMOOTH}
+    smooth = {k: v for k, v in arrays.items() if v.ndim == 2 or k.endswith(_SMOOTH)}
     return meshio.Mesh(
         _solid(cells.corners),
         [("quad", cells.quads)],

@@ -88,7 +88,7 @@ class Sensor:
         return live.read(run)
 
     def solution(self, run: Growth) -> Solution:
-        """The potential as it was last read.
+        """The potential as it was last read, before the conductor parted if it has.
 
         Raises
         ------
@@ -170,6 +170,9 @@ class _Live:
 
     def read(self, run: Growth) -> float:
         """See `Sensor.__call__`."""
+        if self._known is not None and np.isinf(self._known[1]):
+            # Bonds do not heal: what has parted stays so, and its equations are gone.
+            return self._known[1]
         self.record.catch_up()
         count = len(self.record.broken)
         if self._known is None or self._known[0] != count:

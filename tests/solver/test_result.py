@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 from solver import Scene, Support, disc, rectangle
+from solver.bonds import Cells
 from solver.material import ConductivityTensor, ElasticTensor
-from solver.result import FORMAT, Result, Table, suffixed
+from solver.result import FORMAT, Result, Table, suffixed, vtk_mesh
 
 
 class Two(Result):
@@ -64,3 +65,15 @@ def test_solutions_say_what_they_hold():
 def test_a_result_must_say_its_fields():
     with pytest.raises(TypeError, match="abstract"):
         Result()
+
+
+def test_unknowns_are_at_the_corners_too_whatever_stands_before_their_names():
+    held = Support.layer(1.0, temperature=0.0)
+    scene = Scene(rectangle(1.0, 1.0), 0.25, ConductivityTensor.isotropic(1.0), [held], m=2)
+    parts = scene.discretise()
+    x = parts.lattice.points[:, 0]
+    names = "temperature", "unstrained_potential", "mode 1 rotation", "damage"
+    mesh = vtk_mesh(parts.lattice.points, dict.fromkeys(names, x), cells=Cells.of(parts.bonds))
+    assert set(mesh.cell_data) == set(names)
+    assert set(mesh.point_data) == set(names) - {"damage"}
+    np.testing.assert_allclose(mesh.point_data["unstrained_potential"], mesh.points[:, 0])

@@ -101,6 +101,22 @@ def test_nothing_is_solved_where_nothing_has_broken():
     assert not any(iterations)
 
 
+def test_a_conductor_that_has_parted_stays_parted():
+    """Bonds that break afterwards, on either side, find nothing to be solved."""
+    sensor = Sensor(conductor(), top, bottom)
+    fake = run(sensor, strip.scene())
+    bonds, upper = fake.bonds, fake.points[:, 1] > 0
+    _, p, q = bonds.ends(np.arange(bonds.whole.size))
+    across = np.nonzero((bonds.strengths.ravel() > 0) & (upper[p] != upper[q]))[0]
+    bonds.broken.add(across, len(fake.steps) + 1, 1.0, False)
+    assert sensor(fake) == np.inf
+    for at in (0.15, -0.15):
+        near = np.argmin(np.hypot(fake.points[:, 0] - 0.35, fake.points[:, 1] - at))
+        more = np.setdiff1d(bonds.of_particles(np.array([near])), bonds.broken.records["bond"])
+        bonds.broken.add(more[:3], len(fake.steps) + 2, 1.0, False)
+        assert sensor(fake) == np.inf
+
+
 def test_a_part_without_a_lead_reads_as_no_number():
     """Its probe floats; the rest of the body is read as ever."""
     sensor = Sensor(conductor(), top, lambda x, y: (abs(x) < 0.06) & (abs(y) < 0.06))
