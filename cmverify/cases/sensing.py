@@ -104,12 +104,20 @@ def square(place: tuple[int, int, int], upper: bool) -> Any:
 
 @cache
 def reference(degrees: float) -> Any:
-    """Finite elements' drops over a/W: (ratios, mouth, leads)."""
+    """Finite elements' drops over a/W: (ratios, mouth, leads).
+
+    Raises
+    ------
+    LookupError
+        If none are stored for fibres at this angle.
+    """
     from references.provenance import load
 
     stored = load("bone-leads")
-    k = int(np.argmin(np.abs(stored["degrees"] - degrees)))
-    return tuple(stored[name][k] for name in ("ratios", "mouth", "leads"))
+    rows = np.flatnonzero(stored["degrees"] == degrees)
+    if not len(rows):
+        raise LookupError(f"bone-leads holds no drops for fibres at {degrees:g}°")
+    return tuple(stored[name][rows[0]] for name in ("ratios", "mouth", "leads"))
 
 
 def slit_drop(degrees: float, ratio: Array, which: int = 1) -> Array:
@@ -191,8 +199,6 @@ def grown(conductor: Conductor, n: int) -> Measurement:
     other = np.array(h["between"]) / float(h["between"][0])
     length = RATIO + np.array(h.advance) / WIDTH
     kept = np.isfinite(drop) & (length <= LONGEST)
-    start = slit_drop(conductor.degrees, np.array([RATIO]))
-    slit = slit_drop(conductor.degrees, length[kept]) / start
     force = bone.THICKNESS / bone.MOVE
     shown = np.isfinite(drop)
     statistics: dict[str, float | int | str] = {
@@ -211,8 +217,12 @@ def grown(conductor: Conductor, n: int) -> Measurement:
         "cost": spent["drop"] / mechanics,
         "fallen": float(max(0.0, -np.diff(drop[shown]).min())),
     }
+    curve = Curve("bond lattice", length[kept], drop[kept], np.zeros(0), np.zeros(0))
     if conductor.degrees == 0.0:
+        # Cracks along inclined fibres leave the line on which slits are known.
+        slit = slit_drop(0.0, length[kept]) / slit_drop(0.0, np.array([RATIO]))
         found["grown"] = worst(np.abs(drop[kept] / slit - 1.0).tolist())
+        curve = Curve("bond lattice", length[kept], drop[kept], slit)
     return Measurement(
         run.body.operator.shape[0],
         found,
@@ -234,9 +244,8 @@ def grown(conductor: Conductor, n: int) -> Measurement:
             ),
             LinePlot(
                 f"Drop over the length of the crack, ζ = {conductor.degrees:g}°", "$b/W$",
-                "$\\Delta\\phi/\\Delta\\phi_0$",
-                (Curve("bond lattice", length[kept], drop[kept], slit),),
-                reference_label="finite elements, slits",
+                "$\\Delta\\phi/\\Delta\\phi_0$", (curve,), joined=conductor.degrees != 0.0,
+                reference_label="finite elements, slits" if conductor.degrees == 0.0 else "",
             ),
         ),
         stages=_stages(run.points, run.scene.spacing, maps),

@@ -25,6 +25,12 @@ def test_drawn_cracks():
     assert "drop" in failed(DRAWN, sensing.slits(Conductor(scale=1.15), True, 2), 2)
 
 
+def test_slits_of_other_fibres_stand_for_none():
+    assert sensing.reference(45.0)[1][0] != sensing.reference(0.0)[1][0]
+    with pytest.raises(LookupError, match="60°"):
+        sensing.reference(60.0)
+
+
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.name)
 def test_faults_are_seen(fault):
     with applied({fault.target: fault.change}):
