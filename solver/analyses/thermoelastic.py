@@ -45,7 +45,7 @@ class Thermoelastic(Result):
         u1, u2 and θ Δx.
     temperature : ndarray, shape (k, N), K
         Change from T₀.
-    kinetic, elastic, thermal, dissipated : ndarray, shape (k,), J per m of thickness
+    kinetic, elastic, thermal, dissipated : ndarray, shape (k,), J/m (J with a thickness)
         ½ v·M v, ½ u·K u − f·u, ½ ϑ·C ϑ/T₀, and what heat conduction has lost since the start.
     """
 
@@ -71,7 +71,7 @@ class Thermoelastic(Result):
 
     @property
     def imbalance(self) -> Array:
-        """Energy and what was lost less the energy at the start, shape (k,), J/m."""
+        """Energy and what was lost less the energy at the start, shape (k,), as these."""
         total = self.kinetic + self.elastic + self.thermal + self.dissipated
         return np.asarray(total - total[0])
 
@@ -130,8 +130,10 @@ def run(
     Raises
     ------
     SceneError
-        If the two scenes are not one body, bonds end at the surface (``extrapolated``), or what
-        is asked for makes no sense.
+        If the two scenes are not one body, bonds end at the surface (``extrapolated``) or at
+        inclusions, something depends on time, or a number makes no sense.
+    InadmissibleMaterialError, MechanismError
+        As for statics.
     """
     if not (np.isfinite(reference) and reference > 0):
         raise SceneError(f"the reference temperature is absolute and positive (K), not {reference}")
@@ -149,6 +151,8 @@ def run(
         raise SceneError(
             "deformational heating is known to whole bonds only: use surface='volume' or 'none'"
         )
+    if scene.inclusions or heat.inclusions:
+        raise SceneError("deformational heating knows one solid: the body has inclusions")
     density = scene.density_for("coupled motions")
     body, warm = (Discretisation.of(described, free=True) for described in (scene, heat))
     if not np.array_equal(body.lattice.places, warm.lattice.places):
@@ -301,7 +305,7 @@ def adiabatic_temperature(
     Raises
     ------
     SceneError
-        If bonds end at the surface, or a number is not positive.
+        If bonds end at the surface or at inclusions, or a number is not positive.
     """
     if not (reference > 0 and heat_capacity > 0):
         raise SceneError("T₀ and the heat capacity must be positive")

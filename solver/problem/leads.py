@@ -79,6 +79,11 @@ def rimmed(scene: Description, bonds: Bonds, moduli: Moduli) -> Bonds:
     """Bonds that end at the rims of the leads on metal.
 
     Leads that are given by a condition have no rim that could be known: theirs stay as they are.
+
+    Raises
+    ------
+    SceneError
+        If the body has inclusions.
     """
     for support in scene.supports:
         region = support.electrode
@@ -87,6 +92,11 @@ def rimmed(scene: Description, bonds: Bonds, moduli: Moduli) -> Bonds:
                 drawn = region.outline(scene.spacing / 16)
             except NoOutlineError:
                 continue
+            if scene.inclusions:
+                raise SceneError(
+                    "leads on metal (Support.lead) are not known in a body with inclusions: their "
+                    "rims would meet other conductors"
+                )
             bonds = _rimmed(bonds, moduli, region, drawn)
     return bonds
 

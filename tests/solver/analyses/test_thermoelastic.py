@@ -9,6 +9,7 @@ from solver import (
     ConductivityTensor,
     ElasticTensor,
     ExpansionTensor,
+    Inclusion,
     Load,
     Scene,
     SceneError,
@@ -95,6 +96,9 @@ def test_what_makes_no_sense_is_refused(body, heat, options, message):
 def test_what_is_no_pair_of_scenes_is_refused():
     with pytest.raises(SceneError, match="needs an elastic scene"):
         thermoelastic.run(HEAT, HEAT, EXPANSION, 1.0, step=0.1, steps=1)
+    other = Inclusion(rectangle(0.4, 0.4), BODY.material)
+    with pytest.raises(SceneError, match="knows one solid"):
+        kicked(replace(BODY, inclusions=[other]), HEAT)
     with pytest.raises(SceneError, match="absolute and positive"):
         thermoelastic.run(BODY, HEAT, EXPANSION, 0.0, step=0.1, steps=1)
     solution = replace(

@@ -6,6 +6,7 @@ import pytest
 from solver import (
     ElasticTensor,
     ElectricConductivityTensor,
+    Inclusion,
     Load,
     MechanismError,
     Scene,
@@ -129,6 +130,12 @@ def test_a_round_lead_feeds_what_the_ring_says(floating):
 def test_what_cannot_be_meant_is_refused(loads, supports, message):
     with pytest.raises((SceneError, MechanismError), match=message):
         scene(loads, supports).solve()
+
+
+def test_metal_beside_inclusions_is_refused_by_name():
+    other = Inclusion(rectangle(0.1, 0.1), ElectricConductivityTensor.isotropic(3.0))
+    with pytest.raises(SceneError, match="leads on metal"):
+        scene([], [GROUND, Support.lead(EAST, 1.0)], inclusions=[other]).solve()
 
 
 def test_a_lead_s_current_is_a_number():
