@@ -57,6 +57,18 @@ def test_examples_can_be_read(path):
 
 
 @pytest.mark.parametrize(
+    "name",
+    ["cantilever", "cooling", "fuse", "polar", "pulse", "shaken", "strain_gauge",
+     pytest.param("modes", marks=pytest.mark.slow)],
+)  # fmt: skip
+def test_examples_run(tmp_path, name):
+    """What no other test here solves."""
+    found = scene_file.request(EXAMPLES / f"{name}.toml").run()
+    assert all(np.isfinite(values).any() for values in found.fields().values())
+    assert all(path.is_file() for path in found.write(tmp_path / name))
+
+
+@pytest.mark.parametrize(
     ("old", "new", "line", "message"),
     [
         ("spacing = 0.1", "spacin = 0.1", 2, "did you mean 'spacing'"),
