@@ -169,6 +169,8 @@ class Stretched:
         if here.spacing != there.spacing or not np.array_equal(here.points, there.points):
             raise SceneError("mechanics and conduction share one lattice: their particles differ")
         mechanical = known.bonds
+        if mechanical.phases is not None or bonds.phases is not None:
+            raise SceneError("a strained conductor knows one solid: the scene has inclusions")
         offsets = {tuple(o): k for k, o in enumerate(mechanical.family.offsets.tolist())}
         for o, offset in enumerate(bonds.family.offsets[: bonds.family.size // 2].tolist()):
             other = offsets.get(tuple(offset))

@@ -135,4 +135,14 @@ def _whole(bonds: Bonds, step: tuple[int, int]) -> Mask:
     """Whether each particle's bond to the neighbour at (dx, dy) carries, shape (N,)."""
     # A horizon is a cell at least: nearest neighbours are always there.
     which = np.flatnonzero((bonds.family.offsets == np.array(step)).all(axis=1))[0]
-    return np.asarray(bonds.strength(int(which)) != 0)
+    whole = bonds.strength(int(which)) != 0
+    if bonds.phases is not None and bonds.body is not None:
+        # Across an interface neighbours are joined by its nodes, if the body does not end there.
+        (dx, dy), lattice = step, bonds.lattice
+        rows, columns = lattice.rows_columns
+        there = lattice.number()[rows + dy, columns + dx]
+        across = (there >= 0) & (bonds.phases.of != bonds.phases.of[there])
+        at, leaving = bonds.body.leaving(lattice, bonds.family.offsets)
+        across[at] &= ~leaving[which]
+        whole = whole | across
+    return np.asarray(whole)

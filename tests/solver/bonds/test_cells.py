@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solver import Crack, ElasticTensor, Scene, disc, rectangle
+from solver import Crack, ElasticTensor, Inclusion, Scene, Support, disc, rectangle
 from solver.bonds import Cells
 from solver.problem import Discretisation
 
@@ -82,3 +82,17 @@ def test_what_is_not_known_stays_unknown_there_only():
     found = cells.at_corners(values)
     assert np.isnan(found).any()
     assert np.isfinite(found).sum() > len(found) // 2
+
+
+def test_cells_of_an_inclusion_share_corners_with_those_around():
+    """No bond joins two solids, and nothing parts them."""
+    solid = ElasticTensor.isotropic(1.0, 0.2)
+    held = [Support.where(lambda x, y: x < -0.4, displacement=0.0)]
+    one, other = (
+        Cells.of(
+            Scene(rectangle(1, 1), 0.1, solid, held, m=2, inclusions=inclusions).discretise().bonds
+        )
+        for inclusions in ([], [Inclusion(disc(0.3), solid)])
+    )
+    np.testing.assert_array_equal(one.quads, other.quads)
+    np.testing.assert_array_equal(one.towards, other.towards)

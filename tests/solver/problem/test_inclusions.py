@@ -303,3 +303,19 @@ def test_overlapping_inclusions_of_any_contrast_are_solved(power, nu, m, treatme
     assert np.isfinite(solution.displacement).all()
     stiff = np.abs(solution.displacement).max() * min(1.0, 10**power)
     assert stiff < 60.0
+
+
+def test_leads_on_a_body_with_inclusions_are_refused():
+    metal = ElectricConductivityTensor.isotropic(1.0)
+    lead = rectangle(0.2, 0.2, (-0.3, 0.0))
+    scene = Scene(
+        rectangle(1.0, 1.0),
+        0.05,
+        metal,
+        m=2,
+        supports=[Support.lead(lead, 0.0)],
+        loads=[Load.source(1.0)],
+        inclusions=[Inclusion(disc(0.1, (0.2, 0.0)), metal)],
+    )
+    with pytest.raises(SceneError, match="one material only"):
+        scene.solve()
