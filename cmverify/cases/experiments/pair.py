@@ -292,7 +292,7 @@ CASES = (
     Case(
         name="crack-pair",
         title="Two cracks that coalesce, collinear and offset",
-        section="beyond the paper",
+        section="Sect. 3, beyond the paper",
         equations=("Eq. 92", "Eq. 104"),
         tags=("fracture", "elasticity", "experiments"),
         shows="Collinear cracks join at the load at which the closed form's K of the inner tips "
