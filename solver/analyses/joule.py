@@ -35,7 +35,15 @@ D = TypeVar("D", bound=Description)
 
 
 def heated(conductor: D, current: Solution) -> D:
-    """The scene of heat conduction with the heat that a current makes as a source."""
+    """The scene of heat conduction with the heat that a current makes as a source.
+
+    Raises
+    ------
+    SceneError
+        If a scene has a thickness, which its loads would count again.
+    """
+    if conductor.thickness is not None or current.scene.thickness is not None:
+        raise SceneError("Joule's heat is known per unit of thickness: leave the thickness out")
     heat = recovery.dissipation(current)
 
     def density(lattice: Lattice, true_edges: bool) -> tuple[Mask, Array]:

@@ -115,6 +115,8 @@ def test_fields_and_refusals(tmp_path):
     assert np.load(chain.write(tmp_path / "fuse")[1])["temperature"].shape == (len(chain.points),)
     with pytest.raises(SceneError, match="heat strains an elastic body"):
         run(chain.current.scene)
+    with pytest.raises(SceneError, match="leave the thickness out"):
+        run(body(thickness=0.5))
     with pytest.raises(SceneError, match="without a voltage"):
         run(body(), voltage=0.0)
     with pytest.raises(SceneError, match="conductivities must be positive"):
