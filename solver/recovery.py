@@ -298,7 +298,7 @@ def joule_heat(solution: State) -> Array:
 
 
 def dissipation(solution: State) -> Array:
-    """Heat that the current makes, shape (N,), W/m³ of a whole cell: what a source has to feed in.
+    """Heat that the current makes, shape (N,), W/m³ of a whole cell (W/m² with a thickness).
 
     Every bond's current times its voltage, k g² α Δv², half at each end; of one that ends at the
     surface what lies in the body, at its particle. Unlike `joule_heat`, a density up to the edge,

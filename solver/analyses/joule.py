@@ -20,6 +20,7 @@ from scipy.spatial import KDTree
 
 from .. import recovery
 from ..arrays import Array, Mask
+from ..bonds import Cells
 from ..errors import SceneError
 from ..geometry import Lattice, Where
 from ..material import ConductivityTensor, ElectricConductivityTensor, ExpansionTensor
@@ -45,6 +46,9 @@ def heated(conductor: D, current: Solution) -> D:
     if conductor.thickness is not None or current.scene.thickness is not None:
         raise SceneError("Joule's heat is known per unit of thickness: leave the thickness out")
     heat = recovery.dissipation(current)
+    # Sources are multiplied by a thickness; what bonds make has it already.
+    thick = current.discretisation.thickness
+    heat = heat if thick is None else heat / thick
 
     def density(lattice: Lattice, true_edges: bool) -> tuple[Mask, Array]:
         if lattice.count != len(heat):
@@ -75,7 +79,8 @@ class Chain(Result):
     ----------
     current, heat, mechanics : Solution
     supplied, made, removed : float
-        What the electrodes supply, what the bonds make of it, and what the sinks take, W per m.
+        What the electrodes supply, what the bonds make of it, and what the sinks take, W/m (W with
+        a thickness).
     """
 
     current: Solution
@@ -89,6 +94,11 @@ class Chain(Result):
     def points(self) -> Array:
         """Particle centres, shape (N, 2), m."""
         return self.mechanics.points
+
+    @property
+    def cells(self) -> Cells:
+        """The particles' cells, parted where bonds carry nothing."""
+        return self.mechanics.cells
 
     @property
     def imbalance(self) -> float:
@@ -153,10 +163,13 @@ def run(
     Raises
     ------
     SceneError
-        If the scene is not elastic, or an electrode or the sink holds no particle.
+        If the scene is not elastic or has inclusions, the voltage is zero, a conductivity is not
+        positive, or an electrode or the sink holds no particle.
     """
     if scene.physics is not ELASTICITY:
         raise SceneError(f"heat strains an elastic body, and this is {scene.physics.adjective} one")
+    if scene.inclusions:
+        raise SceneError("Joule's heat and what it strains know one solid: the body has inclusions")
     if not (np.isfinite(voltage) and voltage != 0):
         raise SceneError(f"without a voltage no current heats the body: {voltage} V")
     angle = math.radians(angle_degrees)

@@ -36,7 +36,7 @@ class Resistor(Result):
     mechanics, unstrained, strained : Solution
         Of the elastic scene, and of the conductor before and after.
     resistances : pair of float
-        Between the electrodes, before and after, Ω m (per thickness).
+        Between the electrodes, before and after, Ω m (Ω with a thickness).
     """
 
     mechanics: Solution
@@ -113,7 +113,8 @@ def run(
     Raises
     ------
     SceneError
-        If the scene is not elastic, an electrode holds no particle, or the strain is too large.
+        If the scene is not elastic, has inclusions or a thickness that is a function, an electrode
+        holds no particle, or the strain is too large.
 
     Examples
     --------
@@ -130,6 +131,11 @@ def run(
     if scene.physics is not ELASTICITY:
         raise SceneError(
             f"strain makes a piezoresistance, and {scene.physics.adjective} scene has none"
+        )
+    if scene.inclusions or callable(scene.thickness):
+        raise SceneError(
+            "a strained conductor is of one solid, its thickness a number: the bonds of this body "
+            "have factors already"
         )
     piezoresistance = Piezoresistance(gauge, law, length, moments)
     material = ElectricConductivityTensor.of_resistivities(

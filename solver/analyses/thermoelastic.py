@@ -23,6 +23,7 @@ from scipy.sparse.linalg import splu
 
 from ..arrays import Array, Indices
 from ..blas import one_thread
+from ..bonds import Cells
 from ..errors import SceneError
 from ..material import ExpansionTensor
 from ..operators.assembled import to_csr
@@ -63,6 +64,11 @@ class Thermoelastic(Result):
     def points(self) -> Array:
         """Particle centres, shape (N, 2), m."""
         return self.body.lattice.points
+
+    @property
+    def cells(self) -> Cells:
+        """The particles' cells, parted where bonds carry nothing."""
+        return Cells.of(self.body.bonds)
 
     @property
     def displacement(self) -> Array:

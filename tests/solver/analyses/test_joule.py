@@ -8,6 +8,7 @@ from solver import (
     ElasticTensor,
     ElectricConductivityTensor,
     ExpansionTensor,
+    Inclusion,
     Load,
     Scene,
     SceneError,
@@ -80,6 +81,15 @@ def test_dissipation_is_what_any_lead_feeds_in(surface):
         recovery.dissipation(body().solve())
 
 
+@pytest.mark.parametrize("thickness", [0.25, lambda x, y: 0.25 + 0 * x])
+def test_a_thickness_makes_powers_less_and_temperatures_the_same(thickness):
+    whole, thin = run(body()), run(body(thickness=thickness))
+    assert thin.made == pytest.approx(0.25 * whole.made, rel=1e-8)
+    assert thin.imbalance < 1e-8
+    hottest = np.nanmax(whole.heat.temperature)
+    assert np.nanmax(thin.heat.temperature) == pytest.approx(hottest, rel=1e-8)
+
+
 def test_a_bar_heats_as_a_parabola_and_grows():
     """σ V²/(8 κ) in the middle, whatever the expansion's sign."""
     region, spacing = rectangle(2.0, 0.5), 0.05
@@ -113,6 +123,9 @@ def test_fields_and_refusals(tmp_path):
     assert {"displacement", "temperature", "potential", "joule_heat"} <= set(chain.fields())
     assert chain.summary()["imbalance"] < 1e-8
     assert np.load(chain.write(tmp_path / "fuse")[1])["temperature"].shape == (len(chain.points),)
+    other = Inclusion(rectangle(0.4, 0.4), ElasticTensor.isotropic(2.0, 0.2))
+    with pytest.raises(SceneError, match="know one solid"):
+        run(body(inclusions=[other]))
     with pytest.raises(SceneError, match="heat strains an elastic body"):
         run(chain.current.scene)
     with pytest.raises(SceneError, match="leave the thickness out"):

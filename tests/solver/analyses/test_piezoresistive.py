@@ -48,5 +48,7 @@ def test_what_is_no_gauge_is_refused():
     scene = Scene(rectangle(1, 1), 0.1, ConductivityTensor.isotropic(1.0))
     with pytest.raises(SceneError, match="strain makes a piezoresistance"):
         piezoresistive.run(scene, 1.0, right, left, (1.0, 1.0))
+    with pytest.raises(SceneError, match="its thickness a number"):
+        piezoresistive.run(bar(thickness=lambda x, y: 1 + 0 * x), 1.0, right, left, (1.0, 1.0))
     with pytest.raises(SceneError, match="holds no particle"):
         piezoresistive.run(bar(), 1.0, lambda x, y: x > 9, left, (1.0, 1.0))
