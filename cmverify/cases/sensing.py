@@ -248,12 +248,19 @@ def grown(conductor: Conductor, n: int) -> Measurement:
                 reference_label="finite elements, slits" if conductor.degrees == 0.0 else "",
             ),
         ),
-        stages=_stages(run.points, run.scene.spacing, maps),
+        stages=_stages(run.points, run.scene.spacing, maps, float(h["drop"][0])),
     )  # fmt: skip
 
 
-def _stages(points: Array, spacing: float, maps: list[tuple[float, float, Array]]) -> Stages:
-    """Four of the potential maps, over the largest potential before the crack grew."""
+def _stages(
+    points: Array, spacing: float, maps: list[tuple[float, float, Array]], intact: float
+) -> Stages | None:
+    """Four of the potential maps, over the largest potential of the first.
+
+    A run that was taken up again has those since then; none, if nothing was read any more.
+    """
+    if not maps:
+        return None
     known = maps[0][2][np.isfinite(maps[0][2])]
     most = float(np.abs(known).max())
     chosen = dict.fromkeys(np.linspace(0, len(maps) - 1, 4).round().astype(int).tolist())
@@ -262,7 +269,7 @@ def _stages(points: Array, spacing: float, maps: list[tuple[float, float, Array]
         points,
         spacing,
         tuple(
-            Stage(f"u* = {maps[k][0]:.3f} mm", np.array([maps[k][0], maps[k][1] / maps[0][1]]),
+            Stage(f"u* = {maps[k][0]:.3f} mm", np.array([maps[k][0], maps[k][1] / intact]),
                   maps[k][2] / most)
             for k in chosen
         ),

@@ -46,6 +46,8 @@ def test_a_run_is_read_and_drawn(monkeypatch):
     assert drop[-1] > 1.05
     assert np.nanmax(outcome.stages.stages[0].values) <= 1.0 + 1e-12
     assert any("paper 1.03" in name for name in outcome.statistics)
+    assert outcome.stages.stages[0].at[1] == pytest.approx(1.0)
+    assert sensing._stages(np.zeros((1, 2)), 1.0, [], 1.0) is None
 
 
 def test_leads_and_probes_are_declared_in_the_body():
