@@ -166,7 +166,8 @@ class Stretched:
     def _require_same_body(self, bonds: Bonds) -> None:
         known = self.state.discretisation
         here, there = bonds.lattice, known.bonds.lattice
-        if here.spacing != there.spacing or not np.array_equal(here.points, there.points):
+        same = here.spacing == there.spacing and here.shift == there.shift
+        if not (same and np.array_equal(here.points, there.points)):
             raise SceneError("mechanics and conduction share one lattice: their particles differ")
         mechanical = known.bonds
         if mechanical.phases is not None or bonds.phases is not None:

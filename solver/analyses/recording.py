@@ -130,7 +130,7 @@ class Series:
     """
 
     def __init__(self, stem: str | os.PathLike[str], bonds: Bonds) -> None:
-        self.stem, self.points, self.cells = Path(stem), bonds.lattice.points, Cells.of(bonds)
+        self.stem, self.points, self.cells = Path(stem), bonds.lattice.places, Cells.of(bonds)
         state_file.check(suffixed(self.stem, ".pvd"), "series")
 
     def write(self, number: int, times: Sequence[float], fields: Mapping[str, Array]) -> None:

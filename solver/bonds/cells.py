@@ -31,7 +31,8 @@ class Cells:
     Attributes
     ----------
     corners : ndarray, shape (c, 2), m
-        Those that several cells share stand once; where a crack passes there is one a side.
+        In the user's coordinates. Those that several cells share stand once; where a crack passes
+        there is one a side.
     quads : ndarray of int, shape (N, 4)
         Corners of each particle's cell, anticlockwise.
     towards : ndarray, shape (N, 4)
@@ -86,7 +87,8 @@ class Cells:
         )
         kept, quads = np.unique(labels, return_inverse=True)
         spacing = lattice.spacing
-        offset = lattice.points[0] - (np.array([columns[0], rows[0]]) + 0.5) * spacing
+        # Bonds know the lattice centred; who looks at the body wants it where it is.
+        offset = lattice.places[0] - (np.array([columns[0], rows[0]]) + 0.5) * spacing
         row, column = np.divmod(kept // 4, width + 1)
         corners = offset + spacing * np.column_stack([column, row])
         return cls(corners, quads.reshape(-1, 4).astype(np.int64), towards)

@@ -1,9 +1,20 @@
 """Cells to look at: one a particle, together where bonds are whole, parted where they are not."""
 
+import meshio
 import numpy as np
 import pytest
 
-from solver import Crack, ElasticTensor, Inclusion, Scene, Support, disc, rectangle
+from solver import (
+    ConductivityTensor,
+    Crack,
+    ElasticTensor,
+    Inclusion,
+    Scene,
+    Support,
+    disc,
+    rectangle,
+    transient,
+)
 from solver.bonds import Cells
 from solver.problem import Discretisation
 
@@ -14,8 +25,6 @@ def cells_of(region, spacing, cracks=(), surface="volume"):
     scene = Scene(region, spacing, SOLID, m=2, cracks=cracks, surface=surface)
     bonds = Discretisation.of(scene, free=True).bonds
     return Cells.of(bonds), bonds
-
-    return Discretisation.of(scene, free=True).bonds
 
 
 def area(points, quads):
@@ -29,6 +38,21 @@ def test_every_particle_has_its_square(region):
     np.testing.assert_allclose(area(cells.corners, cells.quads), 0.01, rtol=1e-12)
     centres = cells.corners[cells.quads].mean(axis=1)
     np.testing.assert_allclose(centres, bonds.lattice.points, atol=1e-12)
+
+
+def test_cells_lie_where_the_body_lies(tmp_path):
+    """Bonds know the lattice centred; files show the body in its place."""
+    region = rectangle(0.5, 0.3, (5.0, -3.0))
+    held = Support.where(lambda x, y: x == x, temperature=0.0)
+    scene = Scene(region, 0.1, ConductivityTensor.isotropic(1.0), [held], m=2, heat_capacity=1.0)
+    solution = scene.solve()
+    cells = solution.cells
+    centres = cells.corners[cells.quads].mean(axis=1)
+    np.testing.assert_allclose(centres, solution.points, atol=1e-12)
+    transient.run(scene, 0.0, [0.1], series=str(tmp_path / "warm"))
+    (frame, *_) = sorted(tmp_path.glob("warm_*.vtu"))
+    found = meshio.read(frame)
+    np.testing.assert_allclose(found.points[:, :2].mean(axis=0), (5.0, -3.0), atol=1e-12)
 
 
 def test_a_whole_body_has_each_corner_once():
