@@ -103,7 +103,7 @@ class Sensor:
     def _require_same_bonds(self, run: Growth) -> None:
         """Refuse a conductor that is not the body whose bonds break."""
         scene, family = self.scene, self.scene.family()
-        lattice = Lattice(scene.region, scene.spacing, family.reach, scene.phase).centred
+        lattice = Lattice(scene.region, scene.spacing, family.reach, scene.phase)
         other = run.bonds
         same = {
             "particles": np.array_equal(lattice.points, other.lattice.points),

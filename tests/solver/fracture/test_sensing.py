@@ -7,6 +7,7 @@ import pytest
 
 from solver import (
     Crack,
+    ElasticTensor,
     ElectricConductivityTensor,
     Load,
     MechanismError,
@@ -99,6 +100,32 @@ def test_nothing_is_solved_where_nothing_has_broken():
 
     run(read, strip.scene())
     assert not any(iterations)
+
+
+def test_a_body_away_from_the_origin_reads_the_same():
+    found = []
+    for x0, y0 in ((0.0, 0.0), (5.0, -3.0)):
+        body = rectangle(1.0, 1.0, (x0, y0))
+
+        def ends(x, y, y0=y0):
+            return abs(y - y0) > 0.3
+
+        def pulled(x, y, y0=y0):
+            return np.stack([0 * x, y - y0], axis=-1)
+
+        common = {"region": body, "spacing": 0.1, "m": 2, "surface": "none",
+                  "cracks": [Crack((x0 - 0.6, y0), (x0 - 0.2, y0))]}  # fmt: skip
+        mechanical = Scene(material=ElasticTensor.isotropic(1.0, 0.2),
+                           supports=[Support.where(ends, displacement=pulled, rotation=0.0)],
+                           **common)  # fmt: skip
+        up, down = rectangle(2.0, 0.2, (x0, y0 + 0.45)), rectangle(2.0, 0.2, (x0, y0 - 0.45))
+        current = Scene(material=CONDUCTOR, supports=[Support.where(down, potential=0.0)],
+                        loads=[Load.flux((0.0, -1.0), where=up)], **common)  # fmt: skip
+        growth = grow(mechanical, Toughness(1e-3), Programme(stop=1.0),
+                      monitors={"drop": Sensor(current, up, down)}, max_solves=4)  # fmt: skip
+        found.append(np.array(growth.history.drop))
+    assert np.ptp(found[0]) > 0
+    np.testing.assert_allclose(found[1], found[0], rtol=1e-6)
 
 
 def test_a_conductor_that_has_parted_stays_parted():
