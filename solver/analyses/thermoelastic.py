@@ -15,6 +15,7 @@ and are in equilibrium. One factorisation serves all steps: bodies of some ten t
 from __future__ import annotations
 
 from dataclasses import dataclass
+from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -145,7 +146,7 @@ def run(
         raise SceneError(f"the reference temperature is absolute and positive (K), not {reference}")
     if not (np.isfinite(step) and step > 0):
         raise SceneError(f"the step must be a positive time, not {step}")
-    if isinstance(steps, bool) or not isinstance(steps, int) or steps < 1:
+    if isinstance(steps, bool) or not isinstance(steps, Integral) or steps < 1:
         raise SceneError(f"the number of steps must be a positive integer, not {steps!r}")
     if scene.physics.storage != "density" or heat.physics.storage != "heat_capacity":
         raise SceneError("deformational heating needs an elastic scene and one of heat conduction")

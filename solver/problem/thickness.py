@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cache
 from itertools import pairwise
+from numbers import Real
 from typing import Any, Protocol
 
 import numpy as np
@@ -66,7 +67,7 @@ def check(scene: Composite) -> None:
     for given in (scene.thickness, *own):
         if given is None or callable(given):
             continue
-        real = isinstance(given, int | float) and not isinstance(given, bool)
+        real = isinstance(given, Real) and not isinstance(given, bool)
         if not real or not 0.0 < given < float("inf"):
             raise SceneError(f"the thickness must be positive (m), not {given!r}")
     if callable(scene.thickness) and any(given is not None for given in own):

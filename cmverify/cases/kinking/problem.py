@@ -52,7 +52,8 @@ class Kink:
         Angle of the crack (and of the material with it) to the lattice's axis 1, degrees.
     surface : "none", "volume" or "extrapolated"
     toughness : "lattice", "even" or "directions"
-        Whether all bonds share one w_c, or those along the lattice's rows are levelled.
+        Whether all bonds share one w_c, those along the lattice's rows are levelled, or cuts along
+        every direction of bonds cost the same.
     control : "following" or "fixed"
         With ``fixed`` the load never falls: it rises to the next event and stays until no bond is
         overloaded, and the batch matters little.
