@@ -15,9 +15,9 @@ the crack begins, symmetry to the last bond, energies. Shown: the rest.
 How wide the band of broken bonds is depends on how many break between two equilibria: where all
 overloaded ones break at once, as in the paper, a length of crack costs 1.0, 1.2, 1.6 G at a/60,
 a/120, a/240. Small batches cost just G (0.98 at a/60), but run along a row of the lattice; they do
-so too where cuts along rows are no cheaper than others (`small batches, levelled`: ends 0.017 a
-below the start), so that a cut's cost is not what holds them. Steps are ten times as large on
-lattices coarser than a/60.
+so too where cuts along rows are no cheaper than others (`small batches, levelled`: the tips end
+0.017 a below their start, with all at once 0.083 a), so that a cut's cost is not what holds them.
+Steps are ten times as large on lattices coarser than a/60.
 
 Measured (u* in ū of the first bond and of a crack): steps 0.605 and 0.63 at a/60, 0.735 and 0.755
 at a/120, 0.970 and 0.975 at a/240 (paper 0.992: −1.7 %; 72 CPU s, no bond without its image); at
