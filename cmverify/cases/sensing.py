@@ -65,7 +65,7 @@ class Conductor:
         """The specimen as a conductor at spacing unit/n, its crack drawn to `tip`."""
         from solver import Cosine, Crack, ElectricConductivityTensor, Load, Scene, Support
 
-        base, _ = Specimen(self.degrees, self.surface).scene(n)
+        base, _ = Specimen(self.degrees, surface=self.surface).scene(n)
         along, across = (rho / self.scale for rho in RESISTIVITIES)
         far = 0.55 * WIDTH
 
@@ -192,7 +192,7 @@ def grown(conductor: Conductor, n: int) -> Measurement:
 
     begun = process_time()
     monitors = {"drop": partial(read, "drop", sensor), "between": partial(read, "between", between)}
-    led = Specimen(conductor.degrees, conductor.surface).led(n, monitors=monitors)
+    led = Specimen(conductor.degrees, surface=conductor.surface).led(n, monitors=monitors)
     mechanics = process_time() - begun - sum(spent.values())
     run, h = led.run, led.run.history
     drop = np.array(h["drop"]) / float(h["drop"][0])

@@ -36,15 +36,7 @@ D = TypeVar("D", bound=Description)
 
 
 def heated(conductor: D, current: Solution) -> D:
-    """The scene of heat conduction with the heat that a current makes as a source.
-
-    Raises
-    ------
-    SceneError
-        If a scene has a thickness, which its loads would count again.
-    """
-    if conductor.thickness is not None or current.scene.thickness is not None:
-        raise SceneError("Joule's heat is known per unit of thickness: leave the thickness out")
+    """The scene of heat conduction with the heat that a current makes as a source."""
     heat = recovery.dissipation(current)
     # Sources are multiplied by a thickness; what bonds make has it already.
     thick = current.discretisation.thickness

@@ -128,8 +128,6 @@ def test_fields_and_refusals(tmp_path):
         run(body(inclusions=[other]))
     with pytest.raises(SceneError, match="heat strains an elastic body"):
         run(chain.current.scene)
-    with pytest.raises(SceneError, match="leave the thickness out"):
-        run(body(thickness=0.5))
     with pytest.raises(SceneError, match="without a voltage"):
         run(body(), voltage=0.0)
     with pytest.raises(SceneError, match="conductivities must be positive"):
