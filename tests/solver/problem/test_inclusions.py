@@ -317,5 +317,5 @@ def test_leads_on_a_body_with_inclusions_are_refused():
         loads=[Load.source(1.0)],
         inclusions=[Inclusion(disc(0.1, (0.2, 0.0)), metal)],
     )
-    with pytest.raises(SceneError, match="leads on metal .* with inclusions"):
+    with pytest.raises(SceneError, match=r"leads on metal .* with inclusions"):
         scene.solve()
