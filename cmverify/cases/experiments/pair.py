@@ -48,7 +48,8 @@ crack's *first* tip, but both move; it now asks where the other path ends. Nothi
 is seen: the tips go straight on, then hook.
 
 6 failed in the first run because the scene was not its own image: one grip was held sideways, the
-other was not. Now both are.
+other was not. Now both are, and it holds at c/16; the paths then overlap by 0.75 c and end 0.19 c
+(0.6 horizons) from the other crack.
 """
 
 from __future__ import annotations
