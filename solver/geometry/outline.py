@@ -196,6 +196,12 @@ class Outline:
             # site on it that is no particle: there the membrane along the edge stands for it.
             found = self._hit(start[lost], bond[lost], 0.0, 1.0, tips=True)
             edge[lost], position[lost], share[lost] = found
+        lost = edge < 0
+        if lost.any():
+            # A missing neighbour on a re-entrant corner itself, or beyond it along its edge: the
+            # bond grazes the corner without leading out of the body, and ends there all the same.
+            found = self._hit(start[lost], bond[lost], TIE, 1.0, grazing=True)
+            edge[lost], position[lost], share[lost] = found
         # Rounding may put it beyond an end; a field linear along the edge stays exact there.
         return edge, np.clip(position, -TIE, 1.0 + TIE), share
 
@@ -205,11 +211,17 @@ class Outline:
         return np.asarray(shapely.linestrings(ends))
 
     def _hit(
-        self, start: Array, bond: Array, low: float, high: float, tips: bool = False
+        self,
+        start: Array,
+        bond: Array,
+        low: float,
+        high: float,
+        tips: bool = False,
+        grazing: bool = False,
     ) -> tuple[Indices, Array, Array]:
         """As `first_hit`, among shares between `low` and `high`; edge −1 where nothing is met.
 
-        With `tips` bonds end at tips too.
+        With `tips` bonds end at tips too, with `grazing` at edges that they do not leave through.
         """
         count = len(start)
         edge, position, share = np.full(count, -1), np.zeros(count), np.zeros(count)
@@ -230,7 +242,7 @@ class Outline:
             # Bonds leave through an edge and do not enter: particles may lie in a sliver. A
             # particle sees the face of a crack that is turned to it; one on the crack itself
             # belongs to the upper side, as for bonds that the crack cuts.
-            leaves = self._leaves(bond[path], met, where)
+            leaves = self._leaves(bond[path], met, where) | grazing
             inwards = np.einsum("ki,ki->k", bond[path], outward[met]) > 0
             turned = inwards & self._turned(start[path], met)
             valid &= np.where(self.face[met] == 0, leaves, turned)
