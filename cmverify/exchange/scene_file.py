@@ -452,7 +452,7 @@ def _try_on_lattice(file: SceneFile, scene: Scene, source: Source, start: float)
                     raise ValueError("the load acts on no particle")
         if load.density is not None:
             with source.at("load", i, "value"):
-                load.density(lattice, scene.surface == "extrapolated")
+                load.density(lattice, scene.surface == "extrapolated", None)
         if load.strain is not None:
             with source.at("load", i, "value"):
                 load.strain(lattice.places, False)

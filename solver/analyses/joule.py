@@ -22,7 +22,7 @@ from .. import recovery
 from ..arrays import Array, Mask
 from ..bonds import Cells
 from ..errors import SceneError
-from ..geometry import Lattice, Where
+from ..geometry import Lattice, Phases, Where
 from ..material import ConductivityTensor, ElectricConductivityTensor, ExpansionTensor
 from ..material.physics import ELASTICITY
 from ..problem import Description, Discretisation, Load, Support
@@ -42,7 +42,9 @@ def heated(conductor: D, current: Solution) -> D:
     thick = current.discretisation.thickness
     heat = heat if thick is None else heat / thick
 
-    def density(lattice: Lattice, true_edges: bool) -> tuple[Mask, Array]:
+    def density(
+        lattice: Lattice, true_edges: bool, phases: Phases | None = None
+    ) -> tuple[Mask, Array]:
         if lattice.count != len(heat):
             raise SceneError("current and heat share one lattice: their particles differ")
         return np.ones(len(heat), dtype=bool), heat[:, None]

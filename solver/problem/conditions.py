@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array, Mask
 from ..errors import SceneError
-from ..geometry import Lattice, Outline, Point, Quadrature, Region, Where, select, volumes
+from ..geometry import Lattice, Outline, Phases, Point, Quadrature, Region, Where, select, volumes
 from ..material import ExpansionTensor
 from ..material.physics import Physics
 
@@ -275,11 +275,17 @@ class Support:
         return found
 
 
-def _volumes(lattice: Lattice, within: Region | None) -> Array:
-    """`volumes`, remembered."""
+def _volumes(lattice: Lattice, within: Region | None, phases: Phases | None) -> Array:
+    """`volumes`, remembered; in a body of several phases each particle's share of its own."""
     key = "volumes", id(within)
     if key not in lattice.known:
-        lattice.known[key] = within, volumes(lattice, within)
+        if phases is None:
+            of_each = volumes(lattice, within)
+        else:
+            of_each = np.zeros(lattice.count)
+            for k, part in enumerate(phases.lattices):
+                of_each[phases.of == k] = volumes(part, within)
+        lattice.known[key] = within, of_each
     found: Array = lattice.known[key][1]
     return found
 
@@ -294,8 +300,8 @@ class Load:
         Body force (N/m³, two components), body couple (N m/m³), source of heat (W/m³) or current
         (A/m³); on edges traction (Pa, two components) and inflow of heat (W/m²) or current (A/m²).
     density : callable, optional
-        Of a load in the body: lattice, whether its edge is where it is drawn → (mask, what acts
-        on each particle over its cell, shape (selected, components)).
+        Of a load in the body: lattice, whether its edge is where it is drawn, its phases if it has
+        several → (mask, what acts on each particle over its cell, shape (selected, components)).
     edge : callable, optional
         Of a load on edges: outline, its shift from the user's coordinates → quadrature.
     points : callable, optional
@@ -310,7 +316,7 @@ class Load:
     """
 
     kind: str
-    density: Callable[[Lattice, bool], tuple[Mask, Array]] | None = None
+    density: Callable[[Lattice, bool, Phases | None], tuple[Mask, Array]] | None = None
     edge: Callable[[Outline, Point], Quadrature] | None = None
     points: Callable[[float], tuple[Array, Array]] | None = None
     electrode: Where | None = None
@@ -331,7 +337,7 @@ class Load:
         cls,
         kind: str,
         value: Value,
-        density: Callable[[Value, Lattice, bool], tuple[Mask, Array]] | None = None,
+        density: Callable[[Value, Lattice, bool, Phases | None], tuple[Mask, Array]] | None = None,
         edge: Callable[[Value, Outline, Point], Quadrature] | None = None,
         points: Callable[[Value, float], tuple[Array, Array]] | None = None,
     ) -> Load:
@@ -351,7 +357,9 @@ class Load:
 
     @classmethod
     def _body(cls, kind: str, value: Value, components: int, where: Where | None) -> Load:
-        def density(value: Value, lattice: Lattice, true_edges: bool) -> tuple[Mask, Array]:
+        def density(
+            value: Value, lattice: Lattice, true_edges: bool, phases: Phases | None = None
+        ) -> tuple[Mask, Array]:
             everywhere = np.ones(lattice.count, dtype=bool)
             mask = everywhere if where is None else select(lattice, where)
             volume = np.ones(lattice.count)
@@ -359,10 +367,10 @@ class Load:
                 # One value a particle goes with the particles that the region holds.
                 listed = not callable(value) and np.ndim(value) >= min(components, 2)
                 if isinstance(where, Region) and not listed:
-                    volume = _volumes(lattice, where)
+                    volume = _volumes(lattice, where, phases)
                     mask = volume > 0
                 else:
-                    volume = _volumes(lattice, None)
+                    volume = _volumes(lattice, None, phases)
             if not mask.any():
                 raise SceneError(f"a {kind} acts on no particle")
             acting = evaluate(value, lattice.places[mask], components, f"a body {kind}")
@@ -376,7 +384,8 @@ class Load:
 
         With ``extrapolated`` surfaces, where edges lie as drawn, all loads in the body act on its
         area (`solver.geometry.strips`): a constant one adds up to density × area, whether or not
-        the body, or the region `where`, is a whole number of cells. Treatments that let the body
+        the body, or the region `where`, is a whole number of cells; each inclusion carries what
+        acts on its own area, with its own thickness. Treatments that let the body
         end at its outermost cells load whole cells.
         """
         return cls._body("force", force, 2, where)
@@ -452,8 +461,10 @@ class Load:
         even = cls._body("current", 1.0, 1, where).density
         assert even is not None
 
-        def density(lattice: Lattice, true_edges: bool) -> tuple[Mask, Array]:
-            mask, volume = even(lattice, true_edges)
+        def density(
+            lattice: Lattice, true_edges: bool, phases: Phases | None = None
+        ) -> tuple[Mask, Array]:
+            mask, volume = even(lattice, true_edges, phases)
             return mask, volume * (current / (volume.sum() * lattice.spacing**2))
 
         return cls("current", density, electrode=where)

@@ -130,7 +130,7 @@ class Discretisation:
         leads.check(scene, lattice, prescribed)
         relating = [support for support in scene.supports if support.constrains]
         constraints = constraints_of.build(relating, lattice, moduli, prescribed, values)
-        load = _loads(scene, lattice, moduli)
+        load = _loads(scene, lattice, moduli, phases)
         sharp_tips = sharp_tips and scene.broken is None
         on_edges = edge_loads(scene, lattice, sharp_tips, phases)
         # Loads act on the nodes at which bonds end: one outline serves both.
@@ -403,13 +403,13 @@ def _within_range(
             raise SceneError(f"{what} strains cells by amounts {wrong}")
 
 
-def _loads(scene: Description, lattice: Lattice, moduli: Moduli) -> Array:
+def _loads(scene: Description, lattice: Lattice, moduli: Moduli, phases: Phases | None) -> Array:
     load = np.zeros((moduli.components, lattice.count))
     scales, physics = moduli.scales(scene.spacing), scene.physics
     for item in scene.loads:
         if item.density is None:
             continue
-        mask, density = item.density(lattice, scene.surface == "extrapolated")
+        mask, density = item.density(lattice, scene.surface == "extrapolated", phases)
         density = thickness.scaled(density, scene, lattice, np.nonzero(mask)[0])
         for column, unknown in enumerate(physics.loads[item.kind]):
             if unknown >= moduli.components:

@@ -78,7 +78,7 @@ class Forcing:
             _, found = _supports(scene, body.lattice, body.moduli)
             values = np.where(np.isnan(body.values), np.nan, found)
         if self.driven:
-            load = _loads(scene, body.lattice, body.moduli)
+            load = _loads(scene, body.lattice, body.moduli, body.bonds.phases)
             edges = [item.edge for item in scene.loads if item.edge is not None]
             shift = body.lattice.centred.shift
             rules = (

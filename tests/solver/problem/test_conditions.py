@@ -204,8 +204,12 @@ treatments = st.sampled_from(["none", "volume", "extrapolated"])
 LEFT = Support.where(lambda x, y: x < -0.2, displacement=0.0)
 
 
+# Loads whose squares are no numbers are refused, see `test_discretisation`.
+tractions = st.floats(-3, 3).filter(lambda t: t == 0.0 or abs(t) > 1e-30)
+
+
 @exact
-@given(st.floats(-3, 3), st.floats(-3, 3), treatments)
+@given(tractions, tractions, treatments)
 def test_traction_has_its_resultant_on_an_aligned_edge(t1, t2, surface):
     edge = Load.traction((t1, t2), (0.5, -0.5), (0.5, 0.5))
     parts = plate(LEFT, loads=[edge], surface=surface)

@@ -121,6 +121,24 @@ def test_sources_act_on_what_is_there(how):
     assert reactions.supply(solution, lambda x, y: x > 1.7) == pytest.approx(-given, rel=1e-8)
 
 
+@pytest.mark.parametrize("part", [rectangle(0.43, 0.43), disc(0.237, (0.1, 0.05))])
+@pytest.mark.parametrize("where", [None, rectangle(0.53, 0.31, (0.1, 0.0))])
+def test_the_weight_of_an_inclusion_is_that_of_its_own_area(part, where):
+    """An interface that cuts cells parts what acts on them: weight is thickness × area."""
+    body = rectangle(2.0, 1.2)
+    scene = Scene(body, 0.05, SOLID, m=2, surface="extrapolated",
+                  supports=[Support.where(lambda x, y: x < -0.8, displacement=0.0)],
+                  loads=[Load.body_force((0.0, -1.0), where)],
+                  inclusions=[Inclusion(part, SOLID, thickness=20.0)])  # fmt: skip
+    fine = 0.05 / 16
+    loaded = (body if where is None else where).outline(fine)
+    inside = loaded.intersection(part.outline(fine)).area
+    given = loaded.area + 19.0 * inside
+    force = reactions.reaction(scene.solve(), lambda x, y: x < -0.8).force
+    # The disc's chords leave out 1e-4 of it.
+    assert force[1] == pytest.approx(given, rel=3e-4)
+
+
 def test_a_smooth_taper_is_of_second_order():
     errors = []
     for cells in (20, 40):
