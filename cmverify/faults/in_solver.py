@@ -61,8 +61,8 @@ def _load(alter: Callable[[Any], Any]) -> Callable[[Function], Function]:
         def wrong(*args: Any, **kwargs: Any) -> Any:
             made = right(*args, **kwargs)
 
-            def density(lattice: Any) -> Any:
-                mask, values = made.density(lattice)
+            def density(*asked: Any) -> Any:
+                mask, values = made.density(*asked)
                 return mask, alter(values)
 
             return dataclasses.replace(made, density=density)

@@ -11,6 +11,8 @@ from cmverify.faults import page, registry, table, trial
 from cmverify.faults.changes import result, scaled
 from cmverify.faults.fault import Fault, find
 from cmverify.faults.trial import Found
+from solver import Load, rectangle
+from solver.geometry import Lattice
 
 NORM = "cmverify.judge.norms.relative_l2"
 PAIR = ("yardsticks", "judges")
@@ -31,6 +33,23 @@ def test_every_fault_has_a_target_and_a_name_of_its_own():
     assert len({f.name for f in faults}) == len(faults)
     for fault in faults:
         find(fault.target)
+
+
+def test_loads_that_are_made_wrong_still_act():
+    """A fault that cannot be run at all is caught by whatever runs it, and shows nothing."""
+    changed = {
+        "solver.problem.conditions.Load.source": Load.source,
+        "solver.problem.conditions.Load.couple": Load.couple,
+        "solver.problem.conditions.Load.body_force": Load.body_force,
+    }
+    lattice = Lattice(rectangle(1.0, 1.0), 0.25, 2)
+    faults = [f for f in registry.all_faults() if f.target in changed]
+    assert len(faults) > 2
+    for fault in faults:
+        value = (1.0, 2.0) if fault.target.endswith("force") else 1.0
+        mask, density = fault.change(changed[fault.target])(value).density(lattice, True, None)
+        assert mask.all()
+        assert not np.allclose(density, value)
 
 
 def test_few_faults_are_argued_and_none_of_those_that_must_be_caught():
