@@ -225,7 +225,7 @@ def catalogue() -> dict[str, Reference]:
                 "tips": [-3, 0, 3, 6, 9, 12, 15],
                 "lead": [-24, 20, 3],
                 "probe": [-24, 1, 2],
-                "elements": 1,
+                "elements": 2,
             },
             spot={"degrees": [90.0]},
             axis="degrees",

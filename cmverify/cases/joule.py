@@ -16,7 +16,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy.integrate import trapezoid
 
 from cmverify.case import Case, Check, Level, Measurement, Method, OrderBand
 from cmverify.cases.common import adapters, warm
@@ -65,6 +64,8 @@ def contacts(scale: float, n: int) -> Measurement:
 
     `scale` is, for tests, a factor on what is expected.
     """
+    from scipy.integrate import trapezoid
+
     from solver import (
         ConductivityTensor,
         ElasticTensor,

@@ -45,7 +45,6 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measurement, Method
 from cmverify.cases.common import warm
@@ -160,6 +159,8 @@ def released(stiffness: float, force: float) -> tuple[float, float]:
     As experiments do it: finite elements with cracks of several lengths say which length has this
     stiffness, and which force reaches G at that length.
     """
+    from scipy.interpolate import CubicSpline
+
     from references.analytic import lekhnitskii
     from references.provenance import load
 

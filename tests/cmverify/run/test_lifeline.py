@@ -41,6 +41,8 @@ def started(out, tmp_path):
         [*command, "--out", str(out)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         text=True, start_new_session=True,
         env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONFAULTHANDLER": "1"},
+        # Who runs tests in the background has it ignored, and Python leaves it so.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )  # fmt: skip
     deadline = time.monotonic() + 60
     while len(list(out.glob("results/toy/*/*.json"))) < 2 and time.monotonic() < deadline:
