@@ -92,5 +92,6 @@ def displacement(layers: Layers, points: ArrayLike, across: int = 16) -> Floats:
     free = np.setdiff1d(np.arange(len(force)), held)
     u = np.zeros(len(force))
     u[free] = factorise(matrix[free][:, free]).solve(force[free])
-    given = np.asarray(points, dtype=float)
-    return np.asarray((basis.probes(given.T) @ u).reshape(2, -1).T)
+    # Component by component: scikit-fem 10 cannot probe vectors.
+    probe = basis.with_element(skfem.ElementQuad2()).probes(np.asarray(points, dtype=float).T)
+    return np.stack([probe @ u[basis.split_indices()[k]] for k in (0, 1)], axis=-1)

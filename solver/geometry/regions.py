@@ -295,6 +295,37 @@ class _Pair(Region):
         return max(_EDGE * size, _ROUNDINGS * float(np.abs(box).max()))
 
 
+def _without_middles(shape: shapely.Geometry, tolerance: float) -> shapely.Geometry:
+    """A polygon, or several, less the vertices that lie on the line between their neighbours.
+
+    `shapely.simplify` keeps one where an edge is parallel to what it divides the ring by.
+    """
+    if isinstance(shape, shapely.MultiPolygon):
+        return shapely.MultiPolygon([_without_middles(one, tolerance) for one in shape.geoms])
+    if not isinstance(shape, shapely.Polygon):
+        return shape
+
+    def corners(ring: shapely.LinearRing) -> Array:
+        points = shapely.get_coordinates(ring)[:-1]
+        while len(points) > 3:
+            back, ahead = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
+            along, here = ahead - back, points - back
+            length = np.hypot(*along.T)
+            off = np.abs(along[:, 0] * here[:, 1] - along[:, 1] * here[:, 0])
+            share = (along * here).sum(axis=1)
+            middle = (off <= tolerance * length) & (share > 0) & (share < length**2)
+            # Never two neighbours at once: what one of them goes by is the other.
+            middle[1:] &= ~middle[:-1]
+            middle[0] &= not middle[-1]
+            if not middle.any():
+                break
+            points = points[~middle]
+        return np.asarray(points)
+
+    rings = [corners(ring) for ring in shape.interiors]
+    return shapely.Polygon(corners(shape.exterior), rings)
+
+
 @dataclass(frozen=True)
 class Union(_Pair):
     """`one` and `other` together: what either of them holds.
@@ -317,7 +348,7 @@ class Union(_Pair):
         other = shapely.snap(other, one, self._same)
         one = shapely.snap(one, other, self._same)
         # Where two edges go on in one line no corner is left.
-        return shapely.simplify(shapely.union(one, other), _STRAIGHT * self._same)
+        return _without_middles(shapely.union(one, other), _STRAIGHT * self._same)
 
     def edge_distance(self, x: Array, y: Array) -> Array:
         x0, y0, x1, y1 = self.bounds

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from solver import Crack, Family, disc, polygon, rectangle
@@ -142,6 +142,7 @@ def same_body(one, other, spacing=0.055):
 
 
 @few
+@example(0.0, 0.0093, 0.4140625, False)
 @given(st.floats(-1.2, 1.2), st.floats(-0.3, 0.3), st.floats(0, 3), st.booleans())
 def test_the_pieces_of_a_body_are_the_body_again(turn, place, angle, overlapping):
     """Whatever the line along which it is cut, also where the pieces overlap."""
