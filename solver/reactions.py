@@ -18,6 +18,8 @@ from .state import State
 class Reaction:
     """Force and moment that supports exert on some particles, per unit thickness.
 
+    With a thickness in N and N m.
+
     Attributes
     ----------
     force : ndarray, shape (2,), N/m

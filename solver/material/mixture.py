@@ -49,7 +49,6 @@ class Mixture(Moduli):
     def __post_init__(self) -> None:
         if len({moduli.strains for moduli in self.solids}) > 1:
             raise SceneError(_CENTRAL)
-
         if "χ" in self.strains:
             raise SceneError(
                 "polar solids have no inclusions yet: their rotations would have to be continuous "
@@ -105,6 +104,9 @@ class Mixture(Moduli):
 
     def absolute(self) -> Mixture:
         return Mixture(tuple(moduli.absolute() for moduli in self.solids), self.of)
+
+    def scaled(self, factor: Array) -> Mixture:
+        return Mixture(tuple(moduli.scaled(factor) for moduli in self.solids), self.of)
 
 
 def together(found: tuple[Stability, ...]) -> Stability:

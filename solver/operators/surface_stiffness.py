@@ -335,10 +335,8 @@ class SurfaceStiffness:
         others : list of (places, shape (l, 2), m; energies, shape (l,))
             Of the corners' chords and of the membrane along the edge, where there are any.
         """
-        ended, outline = self.ended, self.ended.outline
-        number = np.full(len(outline.nodes), -1)
-        number[self.nodes] = np.arange(len(self.nodes))
-        rule = BondStrains(family, moduli, ended.offset, ended.length, ended.factor)
+        ended, outline, number = self.ended, self.ended.outline, self.number
+        rule = BondStrains.of(ended, family, moduli)
         strains, _ = self.strains(values, nodal)
         others = []
         if (chords := ended.chords) is not None:

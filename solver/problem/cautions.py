@@ -28,6 +28,8 @@ _AREA = 0.01
 # Share of the largest opening or slip of a crack below which an overlap is an error of the lattice,
 # and of the strain between neighbours.
 _OVERLAP, _STRAINED = 0.02, 0.05
+# Share of the particles whose bonds end at edges that lie on one if a row of them does.
+_IN_ROWS = 0.1
 # What thin members come to (m = 5, two cells thick, measured in bending).
 _THIN: dict[str, str] = {"extrapolated": "-17 %", "volume": "+25 %", "none": "+156 %"}
 
@@ -72,22 +74,30 @@ def left_over(lattice: Lattice, surface: Surface) -> tuple[str, ...]:
     )
 
 
-def on_interfaces(bonds: Bonds) -> tuple[str, ...]:
-    """Says so if particles lie on an interface between phases, where bonds end without a length."""
+def on_edges(bonds: Bonds) -> tuple[str, ...]:
+    """Says so if particles lie on an interface or in rows on edges, where bonds have no length.
+
+    Round and oblique edges run close to one particle in so many: their places average out. Of a
+    row along an edge all err to the same side.
+    """
     ended = bonds.ended
-    if bonds.phases is None or ended is None:
+    if ended is None:
         return ()
-    short = (ended.outline.face[ended.edge] == INNER) & (
-        ended.length < SHORTEST * bonds.lattice.spacing
-    )
-    count = len(np.unique(ended.particle[short]))
-    if not count:
-        return ()
-    return (
-        f"{count} particles lie on an interface between two materials, or within "
-        f"{SHORTEST:g} cells of it: it seems up to that much thicker than it is (shift the lattice "
-        f"with the scene's phase, or the spacing)",
-    )
+    short = ended.length < SHORTEST * bonds.lattice.spacing
+    inner = ended.outline.face[ended.edge] == INNER
+    found: list[str] = []
+    for where, what, least in (
+        (inner, "an interface between two materials", 0.0),
+        (ended.outline.face[ended.edge] == 0, "an edge of the body", _IN_ROWS),
+    ):
+        count = len(np.unique(ended.particle[where & short]))
+        if count and count > least * len(np.unique(ended.particle[where])):
+            found.append(
+                f"{count} particles lie on {what}, or within {SHORTEST:g} cells of it: it seems up "
+                f"to that much farther out than it is (shift the lattice with the scene's phase, "
+                f"or the spacing)"
+            )
+    return tuple(found)
 
 
 def thin_layers(lattice: Lattice, prescribed: Mask, m: float) -> tuple[str, ...]:

@@ -265,7 +265,7 @@ class Discretisation:
             (
                 *self.bonds.warnings,
                 *cautions.left_over(lattice, scene.surface),
-                *cautions.on_interfaces(self.bonds),
+                *cautions.on_edges(self.bonds),
                 *cautions.thin_layers(lattice, given, scene.m),
                 *cautions.thin_members(lattice, scene.m, scene.surface),
             )

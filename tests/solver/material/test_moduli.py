@@ -82,13 +82,16 @@ def test_a_factor_scales_every_modulus():
     """Whatever a kind of bond has: none of its moduli is forgotten."""
     factor = np.array([2.0, 0.5])
     for kind in subclasses(Moduli):
-        if kind is Mixture:  # it holds the moduli of others
-            continue
-        size = len(dataclasses.fields(kind))
-        moduli = kind(*(np.array([1.0, 3.0]) for _ in range(size)))
+        if kind is Mixture:
+            solids = ElasticModuli(*np.ones((2, 2))), ElasticModuli(*np.full((2, 2), 3.0))
+            moduli = Mixture(solids, np.array([0, 1]))
+        else:
+            size = len(dataclasses.fields(kind))
+            moduli = kind(*(np.array([1.0, 3.0]) for _ in range(size)))
         found = moduli.scaled(factor)
         assert type(found) is kind
-        np.testing.assert_array_equal(found.stiffness, moduli.stiffness * factor)
+        for one, before in zip(found.each, moduli.each, strict=True):
+            np.testing.assert_array_equal(one.stiffness, before.stiffness * factor)
 
 
 def subclasses(kind):

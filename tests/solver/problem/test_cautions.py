@@ -147,3 +147,10 @@ def test_a_ligament_beside_a_hole():
     said = said_of(rectangle(3.0, 3.0) - disc(0.5, (0.75, 0.0)))
     assert len(said) == 1
     assert "about (1.3" in said[0] or "about (1.4" in said[0]
+
+
+@pytest.mark.parametrize(("phase", "told"), [((0.5, 0.0), True), ((0.3, 0.0), False)])
+def test_a_row_of_particles_on_an_edge_is_told_of(phase, told):
+    """Bonds that end where they begin are counted as a tenth of a cell long."""
+    found = warnings(phase=phase, surface="extrapolated")
+    assert any("lie on an edge of the body" in said for said in found) == told
