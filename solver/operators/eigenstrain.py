@@ -37,14 +37,8 @@ from ..bonds import Bonds, EndedBonds
 from ..bonds.ended import SHORTEST
 from ..material import Moduli
 from ..material.strains import elongations, homogeneous_stretch
-from .surface_stiffness import (
-    BondStrains,
-    SurfaceStiffness,
-    between,
-    chord_strains,
-    membrane,
-    place,
-)
+from .surface_pieces import BondStrains, between, chord_strains, membrane, place
+from .surface_stiffness import SurfaceStiffness
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-import solver.operators.surface_stiffness
+import solver.operators.surface_pieces
 from solver import (
     ConductivityTensor,
     Crack,
@@ -152,7 +152,7 @@ def dense_reference(operator):
 def test_the_condensed_operator_is_that_of_the_single_bonds(material, monkeypatch):
     # The membrane along the edge has tests of its own.
     monkeypatch.setattr(
-        solver.operators.surface_stiffness,
+        solver.operators.surface_pieces,
         "thickness",
         lambda *a: np.zeros(len(a[3])),
     )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-import solver.operators.surface_stiffness
+import solver.operators.surface_pieces
 from solver import (
     ConductivityTensor,
     Crack,
@@ -98,7 +98,7 @@ def test_the_membranes_energy_by_hand(monkeypatch):
         outline, operator.bonds.family, operator.moduli, np.arange(len(outline.edges))
     )
     monkeypatch.setattr(
-        solver.operators.surface_stiffness,
+        solver.operators.surface_pieces,
         "thickness",
         lambda *a: np.zeros(len(a[3])),
     )
@@ -124,7 +124,7 @@ def test_a_square_off_the_lattice(monkeypatch):
     square, phase = rectangle(1.0, 1.0), (0.0, 0.0)
     assert homogeneous_error(square, 25, "extrapolated", phase=phase)[0] < 5e-3
     monkeypatch.setattr(
-        solver.operators.surface_stiffness,
+        solver.operators.surface_pieces,
         "thickness",
         lambda *a: np.zeros(len(a[3])),
     )
@@ -136,7 +136,7 @@ def test_a_disc(monkeypatch):
     body = disc(0.5)
     assert homogeneous_error(body, 40, "extrapolated")[0] < 1.1e-3
     monkeypatch.setattr(
-        solver.operators.surface_stiffness,
+        solver.operators.surface_pieces,
         "thickness",
         lambda *a: np.zeros(len(a[3])),
     )
