@@ -418,8 +418,8 @@ def _try_on_lattice(file: SceneFile, scene: Scene, source: Source, start: float)
     from solver.geometry import Lattice, select
     from solver.problem import thickness
     from solver.problem.conditions import at_time, evaluate
-    from solver.problem.discretisation import edge_loads
     from solver.problem.inclusions import phases_of
+    from solver.problem.loading import edge_loads
 
     with source.at("discretisation"):
         family = scene.family()

@@ -2,37 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from time import perf_counter
 
 import numpy as np
-from scipy.spatial import KDTree
 
-from ..arrays import Array, Indices, Mask
+from ..arrays import Array, Mask
 from ..bonds import Bonds
 from ..errors import MechanismError, SceneError
 from ..geometry import (
-    Body,
-    Crack,
-    CrackSet,
-    Frame,
     Lattice,
-    Outline,
-    Phases,
-    Quadrature,
-    on_edges,
-    on_particles,
     volumes,
 )
-from ..magnitude import STRAINS, outside
 from ..material import Family, Moduli, Stability
 from ..operators import BondOperator
 from ..operators.eigenstrain import Eigenstrain
-from . import cautions, inclusions, leads, mechanisms, thickness
+from . import cautions, inclusions, leads, loading, mechanisms, thickness
 from . import constraints as constraints_of
-from .conditions import evaluate
 from .constraints import Constraints
 from .description import Description
 
@@ -123,20 +110,20 @@ class Discretisation:
                 "quasi-static fracture only"
             )
         lattice = Lattice(scene.region, scene.spacing, family.reach, scene.phase)
-        cracks = _moved(scene.cracks, lattice)
+        cracks = loading.centred_cracks(scene.cracks, lattice)
         phases = inclusions.phases_of(scene, lattice)
         moduli = inclusions.mixed(each, phases)
-        prescribed, values = _supports(scene, lattice, moduli)
+        prescribed, values = loading.prescribed_values(scene, lattice, moduli)
         leads.check(scene, lattice, prescribed)
         relating = [support for support in scene.supports if support.constrains]
         constraints = constraints_of.build(relating, lattice, moduli, prescribed, values)
-        load = _loads(scene, lattice, moduli, phases)
+        load = loading.body_loads(scene, lattice, moduli, phases)
         sharp_tips = sharp_tips and scene.broken is None
-        on_edges = edge_loads(scene, lattice, sharp_tips, phases)
+        on_edges = loading.edge_loads(scene, lattice, sharp_tips, phases)
         # Loads act on the nodes at which bonds end: one outline serves both.
         outline = on_edges[0].outline if on_edges else None
         broken = scene.broken(lattice, family) if scene.broken else None
-        held = _held(scene, prescribed)
+        held = loading.held_particles(scene, prescribed)
         aside = np.zeros(lattice.count, dtype=bool)
         while True:
             bonds = Bonds(
@@ -157,7 +144,7 @@ class Discretisation:
                 bonds = bonds.scaled(scene.factors(bonds, moduli))
             if (thick := thickness.factors(scene, lattice, bonds)) is not None:
                 bonds = bonds.scaled(thick)
-            _hold_edges(scene, bonds, moduli)
+            loading.hold_edges(scene, bonds, moduli)
             operator = BondOperator(bonds, moduli, prescribed)
             loose, why = mechanisms.find(
                 bonds,
@@ -184,16 +171,16 @@ class Discretisation:
             prescribed[:, loose] = True
             values[:, loose] = np.nan
             broken = mechanisms.without(bonds, broken, loose)
-        nodal_load = _share_out(on_edges, lattice, operator, load)
-        _concentrate(scene, lattice, cracks, operator, load, nodal_load)
+        nodal_load = loading.share_out(on_edges, lattice, operator, load)
+        loading.concentrate(scene, lattice, cracks, operator, load, nodal_load)
         if load[:, aside].any():
             raise MechanismError(
                 "a load on an edge acts on a part that nothing holds: hold it, or leave it out of "
                 "the load (where=...)"
             )
         acting = load.copy() if any(item.strain is not None for item in scene.loads) else None
-        eigenstrain = _eigenstrain(scene, lattice, operator, load, nodal_load)
-        _within_range(operator, values, load, nodal_load)
+        eigenstrain = loading.eigenstrain(scene, lattice, operator, load, nodal_load)
+        loading.require_range(operator, values, load, nodal_load)
         seconds = perf_counter() - begun
         return cls(
             scene,
@@ -216,7 +203,7 @@ class Discretisation:
     @property
     def held(self) -> Mask:
         """Particles whose place (or temperature) is prescribed, or which were set aside, (N,)."""
-        return _held(self.scene, self.prescribed)
+        return loading.held_particles(self.scene, self.prescribed)
 
     @cached_property
     def volumes(self) -> Array:
@@ -275,7 +262,7 @@ class Discretisation:
         """Cracks whose faces a field of shape (components, N) moves into each other."""
         if not (self.scene.physics.breakable and self.scene.cracks):
             return ()
-        cracks = _moved(self.scene.cracks, self.lattice)
+        cracks = loading.centred_cracks(self.scene.cracks, self.lattice)
         return cautions.told(cautions.overlaps(self.bonds, cracks, unknowns[:2]))
 
     @property
@@ -319,249 +306,3 @@ class Discretisation:
         values[:, self.operator.active] = x.reshape(self.operator.components, -1)
         values[self.prescribed] = self.values[self.prescribed]
         return values
-
-
-def _supports(scene: Description, lattice: Lattice, moduli: Moduli) -> tuple[Mask, Array]:
-    prescribed = np.zeros((moduli.components, lattice.count), dtype=bool)
-    values = np.zeros((moduli.components, lattice.count))
-    scales = moduli.scales(scene.spacing)
-    for support in scene.supports:
-        if support.constrains or support.nodes is not None:
-            continue
-        columns = support.columns(scene.physics)
-        selected = support.select(lattice)
-        if not selected.any():
-            raise SceneError("a support holds no particle: its layer or region is empty")
-        evaluated: dict[tuple[int, int], Array] = {}
-        for unknown, value, component, width in columns:
-            if unknown >= moduli.components:
-                # No bond resists it, it is no unknown; prescribing it is moot.
-                continue
-            key = id(value), width
-            if key not in evaluated:
-                what = "a prescribed value"
-                evaluated[key] = evaluate(value, lattice.places[selected], width, what)
-            prescribed[unknown, selected] = True
-            values[unknown, selected] = scales[unknown] * evaluated[key][:, component]
-    return prescribed, values
-
-
-def _hold_edges(scene: Description, bonds: Bonds, moduli: Moduli) -> None:
-    """Prescribe the nodes of the outline that supports of the edge hold, in `bonds`."""
-    if all(support.nodes is None for support in scene.supports):
-        return
-    if scene.surface != "extrapolated":
-        raise SceneError(
-            f"the body's edge has no nodes to hold with surface={scene.surface!r}: use "
-            f"surface='extrapolated', or hold a layer of particles"
-        )
-    if bonds.ended is None:
-        raise SceneError("a support of the edge holds nothing: no bond ends at the body's edge")
-    bonds.ended = bonds.ended.holding(
-        *edge_values(scene, bonds.ended.outline, bonds.lattice, moduli)
-    )
-
-
-def edge_values(
-    scene: Description, outline: Outline, lattice: Lattice, moduli: Moduli
-) -> tuple[Mask, Array]:
-    """Components of the outline's nodes that are held, and at what, both (components, nodes)."""
-    shift = lattice.shift
-    held = np.zeros((moduli.components, len(outline.nodes)), dtype=bool)
-    given, scales = np.zeros(held.shape), moduli.scales(scene.spacing)
-    for support in scene.supports:
-        if support.nodes is None:
-            continue
-        chosen = support.nodes(outline, shift)
-        if not chosen.any():
-            raise SceneError("a support of the edge holds no node: its region misses the edge")
-        for unknown, value, component, width in support.columns(scene.physics):
-            if unknown >= moduli.components:
-                continue
-            places = outline.nodes[chosen] + shift
-            found = evaluate(value, places, width, "a prescribed value")
-            held[unknown, chosen] = True
-            given[unknown, chosen] = scales[unknown] * found[:, component]
-    return held, given
-
-
-def _within_range(
-    operator: BondOperator, values: Array, load: Array, nodal_load: Array | None
-) -> None:
-    """Refuse loads and prescribed values whose squares are no numbers any more."""
-    spacing = operator.bonds.family.spacing
-    stiffness = float(np.abs(operator.bulk_blocks).max())
-    for what, array, unit in (
-        ("what is prescribed", values, spacing),
-        ("the load", load, stiffness * spacing),
-        ("the load on the edge", nodal_load, stiffness * spacing),
-    ):
-        if array is None:
-            continue
-        largest = float(np.nanmax(np.abs(array), initial=0.0))
-        if wrong := outside(largest / unit, STRAINS):
-            raise SceneError(f"{what} strains cells by amounts {wrong}")
-
-
-def _loads(scene: Description, lattice: Lattice, moduli: Moduli, phases: Phases | None) -> Array:
-    load = np.zeros((moduli.components, lattice.count))
-    scales, physics = moduli.scales(scene.spacing), scene.physics
-    for item in scene.loads:
-        if item.density is None:
-            continue
-        mask, density = item.density(lattice, scene.surface == "extrapolated", phases)
-        density = thickness.scaled(density, scene, lattice, np.nonzero(mask)[0])
-        for column, unknown in enumerate(physics.loads[item.kind]):
-            if unknown >= moduli.components:
-                raise SceneError(f"a body {item.kind} {physics.missing[unknown]}")
-            load[unknown, mask] += density[:, column] / scales[unknown]
-    return load
-
-
-def _held(scene: Description, prescribed: Mask) -> Mask:
-    """Particles that are held, shape (N,): a matter of displacement (or temperature) alone.
-
-    Whether its particles may turn or not, a clamp is no free surface.
-    """
-    turning = np.array(scene.physics.turning[: len(prescribed)])
-    return np.asarray(prescribed[~turning].all(axis=0))
-
-
-def _moved(cracks: Sequence[Crack], lattice: Lattice) -> list[Crack]:
-    """Cracks in the coordinates of the centred lattice."""
-    x, y = lattice.centred.shift
-    return [
-        crack if (x, y) == (0.0, 0.0) else crack.moved((-x, -y), lattice.grid) for crack in cracks
-    ]
-
-
-def edge_loads(
-    scene: Description, lattice: Lattice, sharp_tips: bool = True, phases: Phases | None = None
-) -> list[Quadrature]:
-    """Loads on the body's edges, evaluated, in the order of the scene's loads."""
-    edges = [item.edge for item in scene.loads if item.edge is not None]
-    if not edges:
-        return []
-    near = lattice.centred
-    moved = _moved(scene.cracks, lattice)
-    if phases is not None:
-        outline = phases.outline(moved, sharp_tips)
-    else:
-        cracks = CrackSet.joined(Frame.of(near), moved, Body.of(near))
-        outline = Outline.of(near.region, cracks, near.spacing, sharp_tips)
-    return [thickness.loaded(scene, edge(outline, near.shift)) for edge in edges]
-
-
-def _share_out(
-    on_edges: list[Quadrature], lattice: Lattice, operator: BondOperator, load: Array
-) -> Array | None:
-    """Give loads on edges to the surface's nodes, or to the nearest particles (into `load`).
-
-    Returns the loads of the outline's nodes, (components, nodes), None if no bond ends at them.
-    """
-    surface = operator.ended_stiffness
-    nodal = None
-    if surface is not None:
-        nodal = np.zeros((load.shape[0], len(surface.ended.outline.nodes)))
-    for rule in on_edges:
-        force = rule.force.T / lattice.spacing**2
-        ends = rule.outline.edges[rule.edge].T
-        share = np.stack([1 - rule.position, rule.position])
-        known = np.zeros(len(rule.outline.nodes), dtype=bool)
-        if surface is not None:
-            known[surface.nodes] = True
-        felt = known[ends].all(axis=0)
-        if nodal is not None:
-            for node, part in zip(ends, share, strict=True):
-                for component, values in enumerate(force):
-                    np.add.at(nodal[component], node[felt], (part * values)[felt])
-        # Edges without nodes: no treatment that has any, or held particles behind them.
-        if felt.all():
-            continue
-        nearest = _nearest(lattice, operator.bonds.phases, rule, np.asarray(~felt))
-        for component, values in enumerate(force):
-            np.add.at(load[component], nearest, values[~felt])
-    return nodal
-
-
-def _nearest(lattice: Lattice, phases: Phases | None, rule: Quadrature, which: Mask) -> Indices:
-    """The particle that is nearest to each of some points of a rule, of the edge's own phase."""
-    points, near = rule.points[which], lattice.centred
-    if phases is None or rule.outline.phase is None:
-        return np.asarray(near.tree.query(points)[1])
-    phase = rule.outline.phase[rule.edge[which]]
-    found = np.zeros(len(points), dtype=np.int64)
-    for k in np.unique(phase):
-        own = np.nonzero(phases.of == k)[0]
-        _, place = KDTree(near.points[own]).query(points[phase == k])
-        found[phase == k] = own[place]
-    return found
-
-
-def _concentrate(
-    scene: Description,
-    lattice: Lattice,
-    cracks: list[Crack],
-    operator: BondOperator,
-    load: Array,
-    nodal_load: Array | None,
-) -> None:
-    """Give loads at points to the surface's nodes (into `nodal_load`) or to particles (`load`)."""
-    near, surface = lattice.centred, operator.ended_stiffness
-    for item in scene.loads:
-        if item.points is None:
-            continue
-        places, force = item.points(scene.spacing)
-        if thickness.varies(scene):
-            force = force * thickness.at(scene, places)[:, None]
-        places, force = places - near.shift, force.T / scene.spacing**2
-        unknowns = scene.physics.loads[item.kind]
-        inside = np.ones(len(places), dtype=bool)
-        if surface is not None and nodal_load is not None:
-            outline = surface.ended.outline
-            edge, position = on_edges(outline, places, scene.spacing)
-            ends = outline.edges[edge]
-            at_edge = (edge >= 0) & np.isin(ends, surface.nodes).all(axis=1)
-            inside = ~at_edge
-            for node, share in zip(ends.T, (1 - position, position), strict=True):
-                for unknown, values in zip(unknowns, force, strict=True):
-                    part = (share * values)[at_edge]
-                    np.add.at(nodal_load[unknown], node[at_edge], part)
-        if inside.any():
-            point, particle, share = on_particles(near, cracks, places[inside])
-            for unknown, values in zip(unknowns, force, strict=True):
-                np.add.at(load[unknown], particle, share * values[inside][point])
-
-
-def _eigenstrain(
-    scene: Description,
-    lattice: Lattice,
-    operator: BondOperator,
-    load: Array,
-    nodal_load: Array | None,
-) -> Eigenstrain | None:
-    """What temperatures strain; their forces are added to `load` and `nodal_load`."""
-    acting = [item.strain for item in scene.loads if item.strain is not None]
-    if not acting:
-        return None
-    surface, phases = operator.ended_stiffness, operator.bonds.phases
-    solids = [None, *(inclusion.expansion for inclusion in scene.inclusions)]
-    each = [sum(strain(lattice.places, False, own).T for strain in acting) for own in solids]
-    particles = np.asarray(each[0])
-    if phases is not None:
-        particles = np.stack(each)[phases.of, :, np.arange(lattice.count)].T
-    nodes = None
-    if surface is not None:
-        at = surface.ended.outline.nodes + lattice.centred.shift
-        # Nodes at which no bond ends feel nothing: a value a node is one of those that do.
-        nodes = np.zeros((len(solids), 3, len(at)))
-        for k, own in enumerate(solids):
-            felt = sum(strain(at[surface.nodes], True, own).T for strain in acting)
-            nodes[k][:, surface.nodes] = felt
-    found = Eigenstrain(operator.bonds, operator.moduli, particles, nodes)
-    load += found.load()
-    if surface is not None and nodal_load is not None:
-        on_particles, on_nodes = found.surface_load(surface)
-        load += on_particles
-        nodal_load += on_nodes
-    return found

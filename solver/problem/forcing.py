@@ -13,17 +13,9 @@ import numpy as np
 from ..arrays import Array
 from ..errors import SceneError
 from ..geometry import Outline
-from . import thickness
+from . import loading, thickness
 from .description import Description
-from .discretisation import (
-    Discretisation,
-    _concentrate,
-    _loads,
-    _moved,
-    _share_out,
-    _supports,
-    edge_values,
-)
+from .discretisation import Discretisation
 
 _REMEMBERED = 4
 
@@ -47,7 +39,7 @@ class Forcing:
         self.edge_moves = any(s.timed for s in scene.supports if s.nodes is not None)
         self._outline: Outline | None = None
         near = body.lattice.centred
-        self._cracks = _moved(scene.cracks, body.lattice)
+        self._cracks = loading.centred_cracks(scene.cracks, body.lattice)
         if self.driven and any(load.edge is not None for load in scene.loads):
             ended = body.bonds.ended
             tips = scene.broken is None
@@ -75,10 +67,10 @@ class Forcing:
         values, load, nodal = body.values, body.load, body.nodal_load
         edge = self._edge_values(scene)
         if self.moving:
-            _, found = _supports(scene, body.lattice, body.moduli)
+            _, found = loading.prescribed_values(scene, body.lattice, body.moduli)
             values = np.where(np.isnan(body.values), np.nan, found)
         if self.driven:
-            load = _loads(scene, body.lattice, body.moduli, body.bonds.phases)
+            load = loading.body_loads(scene, body.lattice, body.moduli, body.bonds.phases)
             edges = [item.edge for item in scene.loads if item.edge is not None]
             shift = body.lattice.centred.shift
             rules = (
@@ -86,8 +78,8 @@ class Forcing:
                 if self._outline is None
                 else [thickness.loaded(scene, edge(self._outline, shift)) for edge in edges]
             )
-            nodal = _share_out(rules, body.lattice, body.operator, load)
-            _concentrate(scene, body.lattice, self._cracks, body.operator, load, nodal)
+            nodal = loading.share_out(rules, body.lattice, body.operator, load)
+            loading.concentrate(scene, body.lattice, self._cracks, body.operator, load, nodal)
             if load[:, np.isnan(values).any(axis=0)].any():
                 raise SceneError(
                     f"at t = {time:g} s a load acts on a part that was set aside: hold it, or "
@@ -102,7 +94,9 @@ class Forcing:
         ended = self.body.bonds.ended
         if not self.edge_moves or ended is None:
             return None
-        return edge_values(scene, ended.outline, self.body.lattice.centred, self.body.moduli)[1]
+        return loading.edge_values(
+            scene, ended.outline, self.body.lattice.centred, self.body.moduli
+        )[1]
 
     def values(self, time: float) -> Array:
         """Prescribed values, shape (components, N); zero where free, NaN where set aside."""
