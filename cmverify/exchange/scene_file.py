@@ -404,7 +404,7 @@ def _afford(
         len(scene.physics.unknowns),
         scene.surface,
         sum(dist(a, b) for crack in file.crack for a, b in pairwise(crack.path)),
-        file.fracture is not None,
+        file.fracture is not None or getattr(file, "sensing", None) is not None,
     )
     free = budget.SHARE * budget.free_memory() if memory is None else memory
     if too_much := cost.refusal(free, seconds):

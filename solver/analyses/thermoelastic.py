@@ -14,25 +14,32 @@ and are in equilibrium. One factorisation serves all steps: bodies of some ten t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import cos, radians, sin
 from numbers import Integral
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
+from .. import recovery
 from ..arrays import Array, Indices
 from ..blas import one_thread
 from ..bonds import Cells
 from ..errors import SceneError
-from ..material import ExpansionTensor
+from ..geometry import Where
+from ..material import ConductivityTensor, ExpansionTensor
+from ..material.physics import ELASTICITY
 from ..operators.assembled import to_csr
+from ..operators.eigenstrain import Eigenstrain
 from ..operators.mass import inertia
 from ..operators.thermal_force import thermal_force
-from ..problem import Description, Discretisation
+from ..problem import Description, Discretisation, Support
 from ..problem.conditions import Value, evaluate
 from ..result import Result, Table
+from ..state import State
+from .registry import Analysis
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +49,7 @@ class Thermoelastic(Result):
     Attributes
     ----------
     body, heat : Discretisation
+    expansion : ExpansionTensor
     times : ndarray, shape (k,), s
     unknowns : ndarray, shape (k, components, N)
         u1, u2 and θ Δx.
@@ -53,6 +61,7 @@ class Thermoelastic(Result):
 
     body: Discretisation
     heat: Discretisation
+    expansion: ExpansionTensor
     times: Array
     unknowns: Array
     temperature: Array
@@ -83,8 +92,14 @@ class Thermoelastic(Result):
         return np.asarray(total - total[0])
 
     def fields(self) -> dict[str, Array]:
-        """Displacement and temperature at the end."""
-        return {"displacement": self.displacement[-1].T, "temperature": self.temperature[-1]}
+        """Displacement, rotation, temperature and stress at the end.
+
+        The stress is that of the bonds' mechanical strain, as everywhere.
+        """
+        free = self.expansion.voigt[:, None] * self.temperature[-1]
+        warm = Eigenstrain(self.body.bonds, self.body.moduli, free)
+        state = State(replace(self.body, eigenstrain=warm), self.unknowns[-1])
+        return {**state.solved(), "temperature": self.temperature[-1], **recovery.fields(state)}
 
     def tables(self) -> dict[str, Table]:
         """The energies."""
@@ -187,6 +202,7 @@ class _March:
         density: float,
     ) -> None:
         self.body, self.heat, self.step, self.reference = body, heat, step, reference
+        self.expansion = expansion
         first = body.operator
         capacity = heat.scene.heat_capacity
         assert capacity is not None
@@ -257,6 +273,7 @@ class _March:
         return Thermoelastic(
             self.body,
             self.heat,
+            self.expansion,
             np.asarray(np.arange(steps + 1) * self.step, dtype=np.float64),
             moved.reshape(steps + 1, c, count),
             warm,
@@ -290,6 +307,79 @@ class _March:
             float(x @ (0.5 * (self.stiffness @ x) - self.load)),
             0.5 * float(t @ (self.capacity * t)) / self.reference,
         )
+
+
+def motion(
+    scene: Description,
+    conductivities: tuple[float, float],
+    expansions: tuple[float, float],
+    heat_capacity: float,
+    reference: float,
+    step: float,
+    steps: int,
+    angle_degrees: float = 0.0,
+    sink: Where | None = None,
+    displacement: Annotated[Value, 2] = 0.0,
+    velocity: Annotated[Value, 2] = 0.0,
+    temperature: Value = 0.0,
+) -> Thermoelastic:
+    """March an elastic body that conducts heat through time; see `run`.
+
+    Parameters
+    ----------
+    scene : Scene
+        Elastic, with a density.
+    conductivities, expansions : pair of float
+        Principal ones along common axes: W/(m K), 1/K (in plane strain the effective ones).
+    heat_capacity : float
+        At constant strain, J/(m³ K).
+    reference : float
+        T₀, K.
+    step : float, s
+    steps : int
+    angle_degrees : float
+        Turn of the axes, anticlockwise.
+    sink : Region or callable, optional
+        Particles whose temperature stays at T₀; without one the body is insulated.
+    displacement, velocity, temperature : values
+        At the start, of the free particles.
+
+    Raises
+    ------
+    SceneError
+        If the scene is not elastic, a conductivity is not positive, and as `run`.
+    """
+    if scene.physics is not ELASTICITY:
+        raise SceneError(f"heat strains an elastic body, and this is {scene.physics.adjective} one")
+    if not all(k > 0 for k in conductivities):
+        raise SceneError(f"conductivities must be positive, not {conductivities}")
+    angle = radians(angle_degrees)
+    heat = replace(
+        scene,
+        material=ConductivityTensor(np.diag(conductivities)).rotated(angle),
+        supports=[] if sink is None else [Support.where(sink, temperature=0.0)],
+        loads=(),
+        law=None,
+        density=None,
+        heat_capacity=heat_capacity,
+    )
+    turn = np.array([[cos(angle), -sin(angle)], [sin(angle), cos(angle)]])
+    return run(
+        scene,
+        heat,
+        ExpansionTensor(turn @ np.diag(expansions) @ turn.T),
+        reference,
+        step=step,
+        steps=steps,
+        displacement=displacement,
+        velocity=velocity,
+        temperature=temperature,
+    )
+
+
+ANALYSIS = Analysis(
+    "thermoelastic", "Motion and heat together: deformational heating and cooling.", motion
+)
 
 
 def adiabatic_temperature(

@@ -79,11 +79,11 @@ def run(
         max_solves=max_solves,
         until=None if advance is None else lambda run: bool(run.advance >= advance),
         checkpoint=checkpoint,
-        listen=None if progress is None else _telling(progress, programme, advance, max_solves),
+        listen=None if progress is None else telling(progress, programme, advance, max_solves),
     )
 
 
-def _telling(
+def telling(
     progress: Progress, programme: Programme, advance: float | None, max_solves: int | None
 ) -> Callable[[Growth], None]:
     """Tells how near a run has come to the nearest of its ends; it never goes back."""

@@ -58,8 +58,8 @@ def test_examples_can_be_read(path):
 
 @pytest.mark.parametrize(
     "name",
-    ["cantilever", "cooling", "fuse", "polar", "pulse", "shaken", "strain_gauge",
-     pytest.param("modes", marks=pytest.mark.slow)],
+    ["cantilever", "cooling", "fuse", "heated_strip", "polar", "pulse", "shaken", "strain_gauge",
+     "watched_crack", pytest.param("modes", marks=pytest.mark.slow)],
 )  # fmt: skip
 def test_examples_run(tmp_path, name):
     """What no other test here solves."""

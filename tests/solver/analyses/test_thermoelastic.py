@@ -55,7 +55,47 @@ def test_energy_is_kept_but_for_what_conduction_loses(surface, held):
         assert run.dissipated[-1] > 0.01 * scale
     assert run.summary()["imbalance"] < 1e-12
     assert run.tables()["energy"].values.shape == (41, 6)
-    assert set(run.fields()) == {"displacement", "temperature"}
+    assert {"displacement", "rotation", "temperature", "stress11"} < set(run.fields())
+
+
+def test_stress_is_that_of_the_mechanical_strain():
+    """A body held in a homogeneous strain, warmed evenly: σ = C (ε − A ϑ)."""
+    slope = np.array([[0.1, -0.3], [0.2, 0.4]])
+    held = Support.where(
+        lambda x, y: x == x,
+        displacement=lambda x, y: np.stack([x, y], axis=-1) @ slope.T,
+        rotation=0.5 * (slope[1, 0] - slope[0, 1]),
+    )
+    warm = Support.where(lambda x, y: x == x, temperature=0.3)
+    run = thermoelastic.run(
+        replace(BODY, supports=[held]),
+        replace(HEAT, supports=[warm]), EXPANSION, 1.5, step=0.1, steps=1, temperature=0.3,
+    )  # fmt: skip
+    strain = np.array([slope[0, 0], slope[1, 1], slope[0, 1] + slope[1, 0]])
+    wanted = SOLID.voigt @ (strain - 0.3 * EXPANSION.voigt)
+    middle = np.argmin(np.hypot(*run.points.T))
+    found = [run.fields()[f"stress{k}"][middle] for k in ("11", "22", "12")]
+    np.testing.assert_allclose(found, wanted, rtol=1e-10)
+
+
+def test_a_scene_alone_says_all():
+    """Principal values along turned axes make the same motion as tensors do."""
+    kick = {"step": 0.05, "steps": 5, "velocity": lambda x, y: np.stack([x, x * y], axis=-1)}
+    turn = ConductivityTensor(np.diag([0.3, 0.1])).rotated(0.4)
+    expands = ConductivityTensor(np.diag([0.3, 0.2])).rotated(0.4).matrix
+    cold = Support.where(lambda x, y: x > 0.3, temperature=0.0)
+    heat = replace(HEAT, material=turn, supports=[cold])
+    wanted = thermoelastic.run(BODY, heat, ExpansionTensor(expands), 1.5, **kick)
+    found = thermoelastic.motion(
+        BODY, (0.3, 0.1), (0.3, 0.2), 0.7, 1.5, angle_degrees=np.degrees(0.4),
+        sink=lambda x, y: x > 0.3, **kick,
+    )  # fmt: skip
+    np.testing.assert_allclose(found.temperature, wanted.temperature, rtol=0, atol=1e-12)
+    assert np.abs(found.temperature).max() > 1e-3
+    with pytest.raises(SceneError, match="this is a conductive"):
+        thermoelastic.motion(HEAT, (1.0, 1.0), (0.1, 0.1), 1.0, 1.0, 0.1, 1)
+    with pytest.raises(SceneError, match="must be positive"):
+        thermoelastic.motion(BODY, (1.0, -1.0), (0.1, 0.1), 1.0, 1.0, 0.1, 1)
 
 
 def test_a_fast_motion_is_adiabatic():
