@@ -260,6 +260,9 @@ def solve(
     max_minutes: Annotated[
         float, typer.Option(min=0.0, help="Estimated minutes that a solve may take.")
     ] = 15.0,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace files of an earlier run.")
+    ] = False,
 ) -> None:
     """Do what a scene file asks for, and write its fields as .vtu and .npz."""
     from rich.console import Console
@@ -267,11 +270,17 @@ def solve(
 
     from cmverify.exchange import scene_file
     from cmverify.exchange.export import check_writable
+    from cmverify.exchange.output import existing
     from cmverify.run.progress import share_done
 
     console = Console()
     base = out or scene.with_suffix("")
     try:
+        if out is not None and out.is_dir():
+            _refuse(f"--out names files without their suffix, and {out} is a folder")
+        if not overwrite and (there := existing(base)):
+            names = ", ".join(path.name for path in there)
+            _refuse(f"{base.parent} has {names} already: choose another --out, or --overwrite")
         request = scene_file.request(
             scene,
             None if max_memory is None else max_memory * 2**30,

@@ -7,13 +7,16 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .arrays import Array
 from .bonds.cells import Cells
+
+if TYPE_CHECKING:
+    from .state import State
 
 # Scalars that are continuous: unknowns, by the ends of their names.
 _SMOOTH = ("rotation", "temperature", "potential")
@@ -50,6 +53,11 @@ class Result(ABC):
     @property
     def cells(self) -> Cells | None:
         """The particles' cells, to be drawn as a surface; None draws dots."""
+        return None
+
+    @property
+    def stressed(self) -> State | None:
+        """The state whose stress is among the fields, if there is one."""
         return None
 
     def tables(self) -> dict[str, Table]:

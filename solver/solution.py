@@ -10,6 +10,7 @@ from scipy.sparse.linalg import LinearOperator
 from . import recovery
 from .arrays import Array
 from .bonds import Cells
+from .material.physics import ELASTICITY
 from .result import Result
 from .state import State
 
@@ -76,6 +77,11 @@ class Solution(State, Result):
     def cells(self) -> Cells:
         """The particles' cells, parted where bonds carry nothing."""
         return Cells.of(self.discretisation.bonds)
+
+    @property
+    def stressed(self) -> State | None:
+        """Itself, if it is elastic."""
+        return self if self.physics is ELASTICITY else None
 
     def fields(self) -> dict[str, Array]:
         """What was solved for and what is recovered from it, by name, (N,) or (N, 2), SI units."""

@@ -23,6 +23,7 @@ from cmverify.exchange.values import (
     Levels,
     Number,
     Point,
+    Points,
     Scalar,
     Vector,
 )
@@ -80,8 +81,11 @@ def kind_of(key: str, annotation: Any) -> Any:
         return Vector
     if origin is tuple and members == (float, float):
         return Point
-    if isinstance(origin, type) and issubclass(origin, Sequence) and members[0] is float:
-        return Levels
+    if isinstance(origin, type) and issubclass(origin, Sequence):
+        if members[0] is float:
+            return Levels
+        if members[0] == tuple[float, float]:
+            return Points
     simple = {bool: StrictBool, int: Count, float: Number, str: FileName}
     if annotation in simple:
         return simple[annotation]

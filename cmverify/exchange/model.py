@@ -8,8 +8,9 @@ solver's objects that `scene_file` builds from it.
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -27,6 +28,7 @@ from cmverify.exchange.values import (
     Condition,
     Count,
     FileName,
+    ForceOrSource,
     Levels,
     Matrix2,
     Matrix3,
@@ -37,6 +39,7 @@ from cmverify.exchange.values import (
     Positive,
     Scalar,
     ScalarInTime,
+    SteadyForceOrSource,
     TripleInTime,
     VectorInTime,
 )
@@ -93,6 +96,7 @@ class Rectangle(_Shape):
     width: Positive = Field(description="m")
     height: Positive = Field(description="m")
     centre: Point = Field(default=[0.0, 0.0], description="m")
+    angle_degrees: Number = Field(default=0.0, description="Turn anticlockwise about the centre")
 
 
 class Polygon(_Shape):
@@ -102,7 +106,20 @@ class Polygon(_Shape):
     vertices: Points = Field(description="Corners in turn, m")
 
 
-Shape = Annotated[Disc | Rectangle | Polygon, Field(discriminator="shape")]
+class FromFile(_Shape):
+    """What another program has drawn: a mesh (.msh, …), a gmsh script (.geo), a drawing (.dxf)."""
+
+    shape: Literal["file"]
+    path: FileName = Field(description="Beside the scene file, or a full path")
+    part: FileName | None = Field(
+        default=None, description="Physical surface (gmsh) or layer (DXF); all by default"
+    )
+    scale: Positive | None = Field(
+        default=None, description="Metres a unit of the file: 1, or what a DXF file says"
+    )
+
+
+Shape = Annotated[Disc | Rectangle | Polygon | FromFile, Field(discriminator="shape")]
 
 
 def _begins(shapes: list[Any]) -> list[Any]:
@@ -161,13 +178,30 @@ class _Turned(_Massive):
     angle_degrees: Number = Field(default=0.0, description="Turn anticlockwise")
 
 
+T = TypeVar("T", bound=Table)
+
+
+def _either(table: T, first: str, second: str) -> T:
+    """Refuse a table that has both of two keys, or neither."""
+    if (getattr(table, first) is None) == (getattr(table, second) is None):
+        raise wrong(first, f"needs either {first} or {second}")
+    return table
+
+
 class Conductivity(Table):
-    """A conductor."""
+    """A conductor by its tensor or its principal conductivities."""
 
     kind: Literal["conductivity"]
-    tensor: Matrix2 = Field(description="Conductivity, W/(m K)")
+    tensor: Matrix2 | None = Field(default=None, description="Conductivity, W/(m K)")
+    principal: Point | None = Field(
+        default=None, description="Along x and y before it is turned, W/(m K)"
+    )
     heat_capacity: Positive | None = Field(default=None, description="ρ c, J/(m³ K)")
     angle_degrees: Number = Field(default=0.0, description="Turn anticlockwise")
+
+    @model_validator(mode="after")
+    def _one(self) -> Conductivity:
+        return _either(self, "tensor", "principal")
 
 
 class Electric(Table):
@@ -182,16 +216,23 @@ class Electric(Table):
 
     @model_validator(mode="after")
     def _one(self) -> Electric:
-        if (self.tensor is None) == (self.resistivities is None):
-            raise wrong("tensor", "needs either tensor or resistivities")
-        return self
+        return _either(self, "tensor", "resistivities")
 
 
 class Elastic(_Turned):
-    """An elastic solid by its plane stiffness."""
+    """An elastic solid by its plane stiffness or compliance."""
 
     kind: Literal["elastic"]
-    voigt: Matrix3 = Field(description="[[C11, C12, C16], [C12, C22, C26], [C16, C26, C66]], Pa")
+    voigt: Matrix3 | None = Field(
+        default=None, description="[[C11, C12, C16], [C12, C22, C26], [C16, C26, C66]], Pa"
+    )
+    compliance: Matrix3 | None = Field(
+        default=None, description="[[S11, S12, S16], …] for strains (ε11, ε22, 2 ε12), 1/Pa"
+    )
+
+    @model_validator(mode="after")
+    def _one(self) -> Elastic:
+        return _either(self, "voigt", "compliance")
 
 
 class Isotropic(_Massive):
@@ -253,12 +294,24 @@ class Inclusion(Table):
 
 # ---- what holds it and acts on it -------------------------------------------------------
 
+Unknown = Literal["u1", "u2", "rotation", "temperature", "potential"]
+
 
 class Support(Table):
-    """Particles on which unknowns are prescribed."""
+    """What is held: particles, the very edge, a rigid pin, a lead; or what moves alike."""
 
-    layer_cells: Positive | None = Field(default=None, description="Those nearer to the edge")
-    where: Condition | None = Field(default=None, description="Those for which this is true")
+    kind: Literal["particles", "edge", "pin", "equal", "lead"] = Field(
+        default="particles",
+        description="Particles, or the very edge (surface = extrapolated); a rigid pin, of which "
+        "what is not given stays free; unknowns of one common value; metal at one potential, which "
+        "floats where none is given",
+    )
+    layer_cells: Positive | None = Field(default=None, description="Particles nearer to the edge")
+    where: Condition | None = Field(default=None, description="Where this is true")
+    unknowns: list[Unknown] | None = Field(default=None, description="That are equal")
+    centre: Point | None = Field(
+        default=None, description="Of a pin, m; the mean of its particles by default"
+    )
     displacement: VectorInTime | None = Field(default=None, description="m")
     u1: ScalarInTime | None = Field(default=None, description="m")
     u2: ScalarInTime | None = Field(default=None, description="m")
@@ -274,9 +327,25 @@ class Support(Table):
 
     @model_validator(mode="after")
     def _complete(self) -> Support:
-        if (self.layer_cells is None) == (self.where is None):
-            raise wrong("where", "needs either layer_cells or where")
-        if not self.values:
+        if self.kind == "particles":
+            if (self.layer_cells is None) == (self.where is None):
+                raise wrong("where", "needs either layer_cells or where")
+        elif self.layer_cells is not None:
+            raise wrong("layer_cells", f"layer_cells says nothing of kind = {self.kind!r}")
+        elif self.where is None and self.kind != "edge":
+            raise wrong("where", f"the key 'where' is missing: kind = {self.kind!r} needs it")
+        for key, owner in (("unknowns", "equal"), ("centre", "pin")):
+            if getattr(self, key) is not None and self.kind != owner:
+                raise wrong(key, f"{key} belongs to kind = {owner!r}")
+        if self.kind == "equal":
+            if not self.unknowns:
+                raise wrong("unknowns", "say which unknowns are equal: u1, u2, rotation, …")
+            if self.values:
+                raise wrong(next(iter(self.values)), "what is equal has no value of its own")
+        elif self.kind == "lead":
+            if other := set(self.values) - {"potential"}:
+                raise wrong(min(other), "a lead has a potential and nothing else")
+        elif not self.values and self.kind != "pin":
             raise wrong(
                 "",
                 "prescribes nothing: give displacement, u1, u2, rotation, temperature or potential",
@@ -335,6 +404,29 @@ class LeadCurrent(Table):
     where: Condition
 
 
+class PointLoad(Table):
+    """A force, or a source of heat or current, at a point."""
+
+    kind: Literal["point"]
+    value: SteadyForceOrSource = Field(description="N, or W or A, each per m of thickness")
+    at: Point = Field(description="m")
+
+
+class LineLoad(Table):
+    """A force per length, or a source, along a straight line in the body or on its edge."""
+
+    kind: Literal["line"]
+    value: ForceOrSource = Field(description="Pa, or W/m² or A/m²")
+    start: Point = Field(description="m")
+    end: Point = Field(description="m")
+
+    @model_validator(mode="after")
+    def _length(self) -> LineLoad:
+        if self.start == self.end:
+            raise wrong("end", "the line ends elsewhere than it starts")
+        return self
+
+
 class Traction(Table):
     """A traction on a straight part of the edge."""
 
@@ -367,7 +459,17 @@ class Flux(Table):
 
 
 Load = Annotated[
-    BodyForce | Couple | Temperature | Source | Current | LeadCurrent | Traction | Stress | Flux,
+    BodyForce
+    | Couple
+    | Temperature
+    | Source
+    | Current
+    | LeadCurrent
+    | PointLoad
+    | LineLoad
+    | Traction
+    | Stress
+    | Flux,
     Field(discriminator="kind"),
 ]
 
@@ -452,6 +554,45 @@ class Fracture(Table):
         return self
 
 
+class Line(Table):
+    """A line along which fields are written, at the particles nearest to it."""
+
+    name: FileName = Field(description="Of its table, <out>.line-<name>.csv")
+    start: Point = Field(description="m")
+    end: Point = Field(description="m")
+    count: Count = Field(default=101, description="Points; those outside the body are left out")
+
+    @model_validator(mode="after")
+    def _checked(self) -> Line:
+        if not re.fullmatch(r"[\w-]+", self.name):
+            raise wrong("name", f"a name of letters, digits, - and _, not {self.name!r}")
+        if self.start == self.end:
+            raise wrong("end", "the line ends elsewhere than it starts")
+        if not 2 <= self.count <= 10**6:
+            raise wrong("count", f"must be from 2 to 10⁶, not {self.count}")
+        return self
+
+
+class Output(Table):
+    """What is written, and how stresses are recovered."""
+
+    fields: list[FileName] | None = Field(default=None, description="By name; all by default")
+    stress_rule: Literal["plane", "family"] | None = Field(
+        default=None,
+        description="Force through a section, or half the virial of a particle's own bonds; by "
+        "default what fits the surface treatment",
+    )
+    line: list[Line] = []
+
+    @model_validator(mode="after")
+    def _names(self) -> Output:
+        names = [line.name for line in self.line]
+        for k, name in enumerate(names):
+            if name in names[:k]:
+                raise wrong("line", f"two lines are called {name!r}")
+        return self
+
+
 class SceneFile(Table):
     """A scene file."""
 
@@ -466,3 +607,4 @@ class SceneFile(Table):
     crack: list[Crack] = []
     solve: Solve = Solve()
     fracture: Fracture | None = None
+    output: Output = Output()

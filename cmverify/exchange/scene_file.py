@@ -21,6 +21,7 @@ import numpy as np
 
 from cmverify.exchange import budget, model
 from cmverify.exchange.model import SceneFile
+from cmverify.exchange.output import Selected, along, check_fields
 from cmverify.exchange.refusal import Place, SceneFileError, Source
 from cmverify.exchange.values import InTime
 
@@ -72,7 +73,10 @@ class Request:
         if progress is not None and analysis.reports:
             options["progress"] = progress
         with self._refused():
-            return analysis.run(self.scene, **options)
+            whole = analysis.run(self.scene, **options)
+        if not self.file.output.model_fields_set:
+            return whole
+        return Selected(whole, self.file.output, self.scene.spacing)
 
     @contextmanager
     def _refused(self) -> Iterator[None]:
@@ -138,6 +142,7 @@ def request(path: Path, memory: float | None = None, seconds: float = budget.SEC
     _afford(file, scene, source, memory, seconds)
     analysis, options = _asked(file, source)
     _timeless(file, source, analysis)
+    _writable(file, scene, source, analysis)
     # Later times are tried by the analysis, before it starts.
     _try_on_lattice(file, scene, source, float(options.get("start", 0.0)))
     return Request(source, file, scene, analysis, options)
@@ -171,6 +176,19 @@ def _asked(file: SceneFile, source: Source) -> tuple[str, dict[str, Any]]:
         with source.at(name, "checkpoint"):
             state_file.check(options["checkpoint"])
     return name, options
+
+
+def _writable(file: SceneFile, scene: Scene, source: Source, analysis: str) -> None:
+    """Refuse outputs that there cannot be."""
+    from solver.analyses import analyses
+    from solver.material.physics import ELASTICITY
+
+    with source.at("output", "fields"):
+        check_fields(file.output.fields)
+    stressed = analyses()[analysis].stressed and scene.physics is ELASTICITY
+    if file.output.stress_rule is not None and not stressed:
+        what = analysis if analysis != "solve" else f"a scene of {scene.physics.name}"
+        raise source.error(("output", "stress_rule"), f"{what} writes no stress to recover")
 
 
 def _timed(file: SceneFile) -> Iterator[tuple[Place, InTime]]:
@@ -244,13 +262,14 @@ def _scene(file: SceneFile, source: Source) -> Scene:
     options = dict(file.discretisation)
     law, exponent = options.pop("law"), options.pop("exponent")
     with source.at("region"):
-        region = _region(file.region)
+        region = _region(file.region, source.path.parent, file.discretisation.spacing)
     with source.at("material"):
         material = _material(file.material)
     supports, loads, cracks, inclusions = [], [], [], []
     for i, inclusion in enumerate(file.inclusion):
         with source.at("inclusion", i):
-            inclusions.append(_inclusion(inclusion, material))
+            folder, step = source.path.parent, file.discretisation.spacing
+            inclusions.append(_inclusion(inclusion, material, folder, step))
             # Whether such a solid goes with the body's.
             Scene(region, options["spacing"], material, inclusions=inclusions[-1:], **_stores(file))
     for i, support in enumerate(file.support):
@@ -299,14 +318,10 @@ def _law(name: str | None, exponent: int | None) -> Any:
     return laws[name]()
 
 
-def _region(shapes: Any) -> Region:
-    import solver
-
+def _region(shapes: Any, folder: Path, step: float) -> Region:
     found: Region | None = None
-    own = ("shape", "operation")
     for table in shapes:
-        values = {k: tuple(v) if k == "centre" else v for k, v in table if k not in own}
-        shape: Region = getattr(solver, table.shape)(**values)
+        shape = _shape(table, folder, step)
         if found is None:
             found = shape
         elif table.operation == "subtract":
@@ -317,13 +332,29 @@ def _region(shapes: Any) -> Region:
     return found
 
 
-def _inclusion(table: model.Inclusion, material: Any) -> Inclusion:
+def _shape(table: Any, folder: Path, step: float) -> Region:
+    import solver
+
+    values = {k: v for k, v in table if k not in ("shape", "operation")}
+    if table.shape == "file":
+        from cmverify.exchange import outline_file
+
+        return outline_file.region(folder / values.pop("path"), chord=step, **values)
+    if "centre" in values:
+        values["centre"] = tuple(values["centre"])
+    if "angle_degrees" in values:
+        values["angle"] = np.radians(values.pop("angle_degrees"))
+    shape: Region = getattr(solver, table.shape)(**values)
+    return shape
+
+
+def _inclusion(table: model.Inclusion, material: Any, folder: Path, step: float) -> Inclusion:
     from solver import ExpansionTensor, Inclusion
 
     own = material if table.material is None else _material(table.material)
     expansion = None if table.expansion is None else ExpansionTensor(table.expansion)
     return Inclusion(
-        _region(table.region),
+        _region(table.region, folder, step),
         own,
         thickness=table.thickness,
         expansion=expansion,
@@ -340,14 +371,22 @@ def _material(table: Any) -> Any:
     )
 
     if table.kind == "conductivity":
-        material: Any = ConductivityTensor(table.tensor)
+        material: Any = (
+            ConductivityTensor.orthotropic(*table.principal)
+            if table.tensor is None
+            else ConductivityTensor(table.tensor)
+        )
     elif table.kind == "electric":
         if table.tensor is not None:
             material = ElectricConductivityTensor(table.tensor)
         else:
             material = ElectricConductivityTensor.of_resistivities(*table.resistivities)
     elif table.kind == "elastic":
-        material = ElasticTensor(table.voigt)
+        material = (
+            ElasticTensor.of_compliance(table.compliance)
+            if table.voigt is None
+            else ElasticTensor(table.voigt)
+        )
     else:
         own = ("kind", "angle_degrees", "density", "bending")
         values = {k: v for k, v in table if k not in own and v is not None}
@@ -363,7 +402,16 @@ def _support(table: model.Support) -> Support:
 
     if table.layer_cells is not None:
         return Support.layer(cells=table.layer_cells, **table.values)
+    if table.kind == "edge":
+        return Support.edge(table.where, **table.values)
     assert table.where is not None
+    if table.kind == "pin":
+        centre = None if table.centre is None else (table.centre[0], table.centre[1])
+        return Support.pin(table.where, centre, **table.values)
+    if table.kind == "equal":
+        return Support.equal(table.where, *(table.unknowns or ()))
+    if table.kind == "lead":
+        return Support.lead(table.where, **table.values)
     return Support.where(table.where, **table.values)
 
 
@@ -372,6 +420,10 @@ def _load(table: Any) -> Load:
 
     if table.kind == "traction":
         return Load.traction(table.value, tuple(table.start), tuple(table.end))
+    if table.kind == "line":
+        return Load.line(table.value, tuple(table.start), tuple(table.end))
+    if table.kind == "point":
+        return Load.point(table.value, tuple(table.at))
     if table.kind == "temperature":
         return Load.temperature(table.value, ExpansionTensor(table.expansion))
     load: Load = getattr(Load, table.kind)(table.value, where=table.where)
@@ -435,6 +487,8 @@ def _try_on_lattice(file: SceneFile, scene: Scene, source: Source, start: float)
         key = "where" if table.layer_cells is None else "layer_cells"
         with source.at("support", i):
             support.columns(scene.physics)
+        if table.kind == "edge":
+            continue  # nodes of the surface, which there are none of yet
         with source.at("support", i, key):
             chosen = support.select(lattice)
             if not chosen.any():
@@ -459,6 +513,9 @@ def _try_on_lattice(file: SceneFile, scene: Scene, source: Source, start: float)
         if load.edge is not None:
             with source.at("load", i):
                 edge_loads(replace(scene, loads=[load]), lattice)
+    for i, line in enumerate(file.output.line):
+        with source.at("output", "line", i):
+            along(lattice.places, {}, line, scene.spacing)
     if file.fracture is not None and file.fracture.no_fail is not None:
         with source.at("fracture", "no_fail"):
             select(lattice, file.fracture.no_fail)

@@ -133,6 +133,18 @@ def components(size: int, time: bool = False) -> Any:
     return check
 
 
+def force_or_source(value: Any) -> Any:
+    """Two numbers or formulas (a force), or one (a source); they may depend on time."""
+    return components(2, time=True)(value) if isinstance(value, list) else scalar_in_time(value)
+
+
+def steady_force_or_source(value: Any) -> list[float] | float:
+    """Two numbers (a force), or one (a source)."""
+    return (
+        [float(part) for part in _nested(value, (2,))] if isinstance(value, list) else number(value)
+    )
+
+
 def numbers(*shape: int) -> Any:
     """Validator of a list of numbers of this length, or of lists; 0 is any length."""
 
@@ -212,6 +224,16 @@ TripleInTime = Annotated[
     Any, PlainValidator(components(3, time=True)), _schema(**_list(_VALUE_IN_TIME, 3))
 ]
 _NUMBER = {"type": "number"}
+ForceOrSource = Annotated[
+    Any,
+    PlainValidator(force_or_source),
+    _schema(anyOf=[_list(_VALUE_IN_TIME, 2), *_VALUE_IN_TIME["anyOf"]]),
+]
+SteadyForceOrSource = Annotated[
+    Any,
+    PlainValidator(steady_force_or_source),
+    _schema(anyOf=[_list(_NUMBER, 2), _NUMBER]),
+]
 Point = Annotated[list[float], BeforeValidator(numbers(2)), _schema(**_list(_NUMBER, 2))]
 Points = Annotated[
     list[list[float]], BeforeValidator(numbers(0, 2)), _schema(**_list(_list(_NUMBER, 2), 0))

@@ -29,6 +29,7 @@ from ..problem import Description, Discretisation, Load, Support
 from ..reactions import supply
 from ..result import Result
 from ..solution import Solution
+from ..state import State
 from .registry import Analysis
 from .statics import solve
 
@@ -99,6 +100,11 @@ class Chain(Result):
         """Largest difference of the three powers, over what is supplied."""
         powers = (self.supplied, self.made, self.removed)
         return (max(powers) - min(powers)) / abs(self.supplied)
+
+    @property
+    def stressed(self) -> State | None:
+        """The body as the heat strains it."""
+        return self.mechanics
 
     def fields(self) -> dict[str, Array]:
         """Fields of all three, and the heat that is made."""
@@ -193,4 +199,6 @@ def run(
     return Chain(current, heat, mechanics, supplied, made, removed)
 
 
-ANALYSIS = Analysis("joule", "A body that a current heats and the heat strains.", run)
+ANALYSIS = Analysis(
+    "joule", "A body that a current heats and the heat strains.", run, stressed=True
+)

@@ -22,6 +22,7 @@ from ..problem import Description, Discretisation, Support
 from ..reactions import supply
 from ..result import Result
 from ..solution import Solution
+from ..state import State
 from ..strained import strained
 from .registry import Analysis
 from .statics import solve
@@ -59,6 +60,11 @@ class Resistor(Result):
     def cells(self) -> Cells:
         """The particles' cells, parted where bonds carry nothing."""
         return self.mechanics.cells
+
+    @property
+    def stressed(self) -> State | None:
+        """The strained body."""
+        return self.mechanics
 
     def fields(self) -> dict[str, Array]:
         """The mechanical fields, and potential and current density of the strained conductor."""
@@ -156,5 +162,8 @@ def run(
 
 
 ANALYSIS = Analysis(
-    "piezoresistive", "Resistance of a strained conductor between two electrodes.", run
+    "piezoresistive",
+    "Resistance of a strained conductor between two electrodes.",
+    run,
+    stressed=True,
 )

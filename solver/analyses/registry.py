@@ -34,12 +34,15 @@ class Analysis:
         (scene, **options) → Result.
     timed : bool
         Whether supports and loads may depend on time.
+    stressed : bool
+        Whether its result has the stress of an elastic state (`Result.stressed`).
     """
 
     name: str
     says: str
     run: Callable[..., Result]
     timed: bool = False
+    stressed: bool = False
 
     @property
     def options(self) -> dict[str, Parameter]:

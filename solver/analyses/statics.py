@@ -139,4 +139,4 @@ def run(scene: Description, tolerance: float = 1e-10, max_iterations: int = 20_0
     return solve(Discretisation.of(scene, constrained=True), tolerance, max_iterations)
 
 
-ANALYSIS = Analysis("solve", "Static equilibrium, or steady conduction.", run)
+ANALYSIS = Analysis("solve", "Static equilibrium, or steady conduction.", run, stressed=True)

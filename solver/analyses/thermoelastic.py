@@ -91,14 +91,16 @@ class Thermoelastic(Result):
         total = self.kinetic + self.elastic + self.thermal + self.dissipated
         return np.asarray(total - total[0])
 
-    def fields(self) -> dict[str, Array]:
-        """Displacement, rotation, temperature and stress at the end.
-
-        The stress is that of the bonds' mechanical strain, as everywhere.
-        """
+    @property
+    def stressed(self) -> State:
+        """The body at the end; its stress is that of the mechanical strain, as everywhere."""
         free = self.expansion.voigt[:, None] * self.temperature[-1]
         warm = Eigenstrain(self.body.bonds, self.body.moduli, free)
-        state = State(replace(self.body, eigenstrain=warm), self.unknowns[-1])
+        return State(replace(self.body, eigenstrain=warm), self.unknowns[-1])
+
+    def fields(self) -> dict[str, Array]:
+        """Displacement, rotation, temperature and stress at the end."""
+        state = self.stressed
         return {**state.solved(), "temperature": self.temperature[-1], **recovery.fields(state)}
 
     def tables(self) -> dict[str, Table]:
@@ -378,7 +380,10 @@ def motion(
 
 
 ANALYSIS = Analysis(
-    "thermoelastic", "Motion and heat together: deformational heating and cooling.", motion
+    "thermoelastic",
+    "Motion and heat together: deformational heating and cooling.",
+    motion,
+    stressed=True,
 )
 
 

@@ -107,4 +107,4 @@ def telling(
     return listen
 
 
-ANALYSIS = Analysis("fracture", "Quasi-static growth of cracks, bond by bond.", run)
+ANALYSIS = Analysis("fracture", "Quasi-static growth of cracks, bond by bond.", run, stressed=True)

@@ -18,6 +18,7 @@ from ..geometry import Where
 from ..result import Result, Table
 from ..scene import Scene
 from ..solution import Solution
+from ..state import State
 from . import crack_path
 from .breaking import TIE, Breakable, Criterion, Critical, next_batch
 from .crack_path import CrackPath
@@ -204,6 +205,11 @@ class Growth(Result):
     def cells(self) -> Cells:
         """The particles' cells, parted where bonds carry nothing."""
         return Cells.of(self.left)
+
+    @property
+    def stressed(self) -> State | None:
+        """The last equilibrium."""
+        return self.solution
 
     def fields(self) -> dict[str, Array]:
         """Fields of the last equilibrium under its load, the damage, and what came loose."""

@@ -19,6 +19,7 @@ from ..material.physics import ELASTICITY
 from ..problem import Load, Support
 from ..result import Result, Table
 from ..scene import Scene
+from ..state import State
 from .analysis import telling
 from .growth import Growth
 from .programme import Control, Programme
@@ -60,6 +61,11 @@ class Sensed(Result):
         """The drop at every equilibrium, shape (k,), V."""
         history = self.growth.history
         return history.array[:, history.names.index(DROP)]
+
+    @property
+    def stressed(self) -> State:
+        """The last equilibrium."""
+        return self.growth.solution
 
     def fields(self) -> dict[str, Array]:
         """Those of the mechanics, and potential and current density as they were read last."""
@@ -164,4 +170,6 @@ max_solves, tolerance, checkpoint, progress
     return Sensed(growth, sensor)
 
 
-ANALYSIS = Analysis("sensing", "Cracks that grow, and the potential drop that tells of them.", run)
+ANALYSIS = Analysis(
+    "sensing", "Cracks that grow, and the potential drop that tells of them.", run, stressed=True
+)

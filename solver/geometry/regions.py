@@ -295,13 +295,13 @@ class _Pair(Region):
         return max(_EDGE * size, _ROUNDINGS * float(np.abs(box).max()))
 
 
-def _without_middles(shape: shapely.Geometry, tolerance: float) -> shapely.Geometry:
+def without_middles(shape: shapely.Geometry, tolerance: float) -> shapely.Geometry:
     """A polygon, or several, less the vertices that lie on the line between their neighbours.
 
     `shapely.simplify` keeps one where an edge is parallel to what it divides the ring by.
     """
     if isinstance(shape, shapely.MultiPolygon):
-        return shapely.MultiPolygon([_without_middles(one, tolerance) for one in shape.geoms])
+        return shapely.MultiPolygon([without_middles(one, tolerance) for one in shape.geoms])
     if not isinstance(shape, shapely.Polygon):
         return shape
 
@@ -348,7 +348,7 @@ class Union(_Pair):
         other = shapely.snap(other, one, self._same)
         one = shapely.snap(one, other, self._same)
         # Where two edges go on in one line no corner is left.
-        return _without_middles(shapely.union(one, other), _STRAIGHT * self._same)
+        return without_middles(shapely.union(one, other), _STRAIGHT * self._same)
 
     def edge_distance(self, x: Array, y: Array) -> Array:
         x0, y0, x1, y1 = self.bounds

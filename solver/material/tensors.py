@@ -73,6 +73,17 @@ class ElasticTensor:
         object.__setattr__(self, "voigt", _validated(voigt, 3, "the elastic tensor"))
 
     @classmethod
+    def of_compliance(cls, compliance: ArrayLike) -> ElasticTensor:
+        """Solid of the plane compliance S, 1/Pa: (ε11, ε22, 2 ε12) = S σ.
+
+        Raises
+        ------
+        ValueError
+            As for a stiffness.
+        """
+        return cls(np.linalg.inv(_validated(compliance, 3, "the compliance")))
+
+    @classmethod
     def isotropic(cls, E: float, nu: float, plane: Plane = "stress") -> ElasticTensor:
         """Isotropic solid of Young modulus `E` (Pa) and Poisson ratio `nu`.
 

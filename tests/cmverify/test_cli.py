@@ -77,7 +77,7 @@ def test_solve_writes_fields_and_names_a_wrong_key(tmp_path):
     assert scene.with_suffix(".vtu").is_file()
     assert scene.with_suffix(".npz").is_file()
     scene.write_text(SMALL.replace("radius", "raduis"))
-    found = cli.invoke(app, ["solve", str(scene)])
+    found = cli.invoke(app, ["solve", str(scene), "--overwrite"])
     assert found.exit_code == 2
     assert "scene.toml:7" in found.output
 

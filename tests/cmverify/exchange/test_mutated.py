@@ -22,7 +22,15 @@ def solved(folder, text):
     """Exit code and output of `cmverify solve`; warnings are errors, and a traceback fails."""
     path = folder / "scene.toml"
     path.write_text(text, encoding="utf-8")
-    given = ["solve", str(path), "--out", str(folder / "out"), "--max-minutes", "0.05"]
+    given = [
+        "solve",
+        str(path),
+        "--out",
+        str(folder / "out"),
+        "--max-minutes",
+        "0.05",
+        "--overwrite",
+    ]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         found = CliRunner().invoke(app, given)

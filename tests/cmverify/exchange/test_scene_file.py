@@ -7,7 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from cmverify.cli import app
-from cmverify.exchange import scene_file
+from cmverify.exchange import output, scene_file
 from cmverify.exchange.expressions import Formula
 from cmverify.exchange.scene_file import SceneFileError
 
@@ -65,6 +65,7 @@ def test_examples_run(tmp_path, name):
     """What no other test here solves."""
     found = scene_file.request(EXAMPLES / f"{name}.toml").run()
     assert all(np.isfinite(values).any() for values in found.fields().values())
+    output.check_fields(list(found.fields()))
     assert all(path.is_file() for path in found.write(tmp_path / name))
 
 
@@ -78,7 +79,7 @@ def test_examples_run(tmp_path, name):
         ('"x**2 - 5*y**2"', '"x**2 -"', 15, "not a formula"),
         ("layer_cells = 3.5", "layer_cels = 3.5", 14, "did you mean 'layer_cells'"),
         ("layer_cells = 3.5\n", "", 13, "either layer_cells or where"),
-        ("tensor = [[5, 2], [2, 1]]", "", 9, "'tensor' is missing"),
+        ("tensor = [[5, 2], [2, 1]]", "", 9, "needs either tensor or principal"),
         ("m = 3", 'law = "cosin"', 3, "is not one of cosine"),
         ("m = 3", "exponent = 4", 3, 'law = "cosine"'),
         ("[[support]]", "[[suport]]", 13, "did you mean 'support'"),
