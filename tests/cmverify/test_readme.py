@@ -1,4 +1,4 @@
-"""What the README shows works as it is written."""
+"""What the README and the pages beside it show works as it is written."""
 
 import re
 from pathlib import Path
@@ -11,7 +11,13 @@ from cmverify.cases import registry
 from cmverify.cli import app
 
 ROOT = Path(__file__).parents[2]
-TEXT = (ROOT / "README.md").read_text()
+PAGES = ("README.md", "docs/python.md", "docs/results.md", "docs/dashboards.md")
+TEXT = "\n".join((ROOT / page).read_text() for page in PAGES)
+FIGURES = [
+    (Path(page).parent / link)
+    for page in PAGES
+    for link in re.findall(r'src="([^"]+)"', (ROOT / page).read_text())
+]
 
 
 def blocks(language: str) -> list[str]:
@@ -19,7 +25,8 @@ def blocks(language: str) -> list[str]:
 
 
 def test_the_scene_of_the_readme_is_solved():
-    (code,) = [block for block in blocks("python") if "solution.temperature" in block]
+    code, again = [block for block in blocks("python") if "solution.temperature" in block]
+    assert code == again
     names: dict = {}
     exec(code, names)  # a coarser grid would be another scene: this one takes under a second
     x, y = names["solution"].points.T
@@ -61,9 +68,9 @@ def test_commands_of_the_readme_exist():
         assert registry.select([name])
 
 
-@pytest.mark.parametrize("link", re.findall(r'src="([^"]+)"', TEXT))
-def test_figures_of_the_readme_are_there_and_small(link):
-    assert 0 < (ROOT / link).stat().st_size < 300_000
+@pytest.mark.parametrize("figure", FIGURES, ids=str)
+def test_figures_are_there_and_small(figure):
+    assert 0 < (ROOT / figure).stat().st_size < 300_000
 
 
 def test_the_crack_of_the_readme_grows():
