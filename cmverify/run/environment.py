@@ -6,6 +6,7 @@ import os
 import platform
 import subprocess
 from dataclasses import asdict, dataclass
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -88,12 +89,24 @@ def _processor() -> str:
 
 
 def _commit() -> str:
-    """Short hash of the checkout this package runs from, "+" if it has changes; or ""."""
+    """Short hash of the checkout this package runs from, "+" if it has changes.
+
+    That of the checkout it was built from where it is installed; "" where neither is known.
+    """
     here = Path(__file__).resolve().parents[2]
     if not (here / ".git").exists():
-        return ""
+        return _built_from()
     try:
         command = ["git", "-C", str(here), "describe", "--always", "--dirty=+"]
         return subprocess.run(command, capture_output=True, text=True, timeout=10).stdout.strip()
     except (OSError, subprocess.TimeoutExpired):
         return ""
+
+
+def _built_from() -> str:
+    """Hash that the build wrote down; "" in a build from an archive."""
+    try:
+        commit = import_module("cmverify._version").commit_id
+    except (ImportError, AttributeError):
+        return ""
+    return str(commit or "").removeprefix("g")

@@ -2,7 +2,7 @@
 
 Energy of a plane orthotropic solid whose points turn by theta, not by omega = curl(u)/2:
 
-    W = eps.C.eps/2 + 2 mu_c (omega - theta)^2 + (E1 theta_,1^2 + E2 theta_,2^2)/2.
+    W = eps.C.eps/2 + 2 mu_c (omega - theta)^2 + (E1 theta,1^2 + E2 theta,2^2)/2.
 
 **Shear** of a strip 0 < y < H between walls that move by U and do not turn. With u = u1(y),
 equilibrium of forces gives tau = (C66 + mu_c) u' + 2 mu_c theta, constant,

@@ -11,7 +11,7 @@ from cmverify.cases import registry
 from cmverify.cli import app
 
 ROOT = Path(__file__).parents[2]
-PAGES = ("README.md", "docs/python.md", "docs/results.md", "docs/dashboards.md")
+PAGES = ("README.md", "docs/python.md", "docs/results.md", "docs/howto/dashboards.md")
 TEXT = "\n".join((ROOT / page).read_text() for page in PAGES)
 FIGURES = [
     (Path(page).parent / link)
