@@ -5,6 +5,10 @@ class SceneError(ValueError):
     """What a scene asks for cannot be: an empty region, a rigid mode left free, a wrong key."""
 
 
+class EmptyRegionError(SceneError):
+    """Shapes that lie apart have nothing in common, or a hole takes all of a body."""
+
+
 class NoOutlineError(SceneError):
     """A region does not say where its edges run, and something needs to know."""
 

@@ -32,7 +32,7 @@ from .exact import Frame
 from .inside import Body
 from .lattice import Lattice
 from .outline import INNER, Outline
-from .regions import Crack, Difference, Point, Region
+from .regions import Crack, Difference, Intersection, Point, Region
 from .rings import EDGE_STEP, rings
 
 # Cells within which corners and edges of two phases are one.
@@ -112,7 +112,7 @@ class Phases:
                     f"{which} holds no particle: it lies outside of the body, under others, or is "
                     f"thinner than the spacing {lattice.spacing:g} m"
                 )
-        rules: list[Region] = [body, *(body & inclusion for inclusion in inclusions)]
+        rules: list[Region] = [body, *(Intersection(body, inclusion) for inclusion in inclusions)]
         for k, rule in enumerate(rules):
             for later in inclusions[k:]:
                 rule = Difference(rule, later)

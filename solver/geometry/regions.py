@@ -25,7 +25,7 @@ import shapely
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..errors import NoOutlineError
+from ..errors import EmptyRegionError, NoOutlineError
 
 Point = tuple[float, float]
 
@@ -37,6 +37,8 @@ _ROUNDINGS = 4 * np.finfo(np.float64).eps
 _STRAIGHT = 1e-3
 # Chords of curves, as a share of the size, from which the edge of a union is measured.
 _FINE = 1.0 / 4096.0
+# Points each way that are tried before a region's outline is asked whether it is empty.
+_TRIED = 16
 
 
 class Region(ABC):
@@ -89,16 +91,34 @@ class Region(ABC):
         return self
 
     def __sub__(self, hole: Region) -> Region:
-        """This region without `hole`."""
-        return Difference(self, hole)
+        """This region without `hole`.
+
+        Raises
+        ------
+        EmptyRegionError
+            If nothing is left.
+        """
+        left = Difference(self, hole)
+        if _empty(left, self, hole):
+            raise EmptyRegionError("nothing is left of a region: what is subtracted covers it")
+        return left
 
     def __or__(self, other: Region) -> Region:
         """This region and `other` in one."""
         return Union(self, other)
 
     def __and__(self, other: Region) -> Region:
-        """What this region and `other` have in common."""
-        return Intersection(self, other)
+        """What this region and `other` have in common.
+
+        Raises
+        ------
+        EmptyRegionError
+            If that is nothing, or but a line or a point.
+        """
+        common = Intersection(self, other)
+        if _empty(common, self, other):
+            raise EmptyRegionError("two regions that lie apart have nothing in common")
+        return common
 
 
 def _moved(points: Sequence[Point], by: Point, grid: float) -> tuple[Point, ...]:
@@ -110,6 +130,39 @@ def _moved(points: Sequence[Point], by: Point, grid: float) -> tuple[Point, ...]
         near = np.rint(there / grid) * grid
         there = np.where(np.abs(near - there) <= rounding, near, there)
     return tuple((float(x), float(y)) for x, y in there)
+
+
+def _require_regions(*regions: Region) -> None:
+    for region in regions:
+        if not isinstance(region, Region):
+            raise TypeError(f"a region combines with a Region, not {type(region).__name__}")
+
+
+def _same(*regions: Region) -> float:
+    """Lengths (m) that rounding may make of nothing where some regions meet."""
+    box = np.array([region.bounds for region in regions])
+    size = float(np.ptp(box.reshape(-1, 2), axis=0).max())
+    return max(_EDGE * size, _ROUNDINGS * float(np.abs(box).max()))
+
+
+def _empty(made: Region, one: Region, other: Region) -> bool:
+    """Whether a region made of two has no area."""
+    x0, y0, x1, y1 = made.bounds
+    if not (x0 < x1 and y0 < y1):
+        return True
+    x, y = (
+        low + (np.arange(_TRIED) + 0.5) / _TRIED * (high - low)
+        for low, high in ((x0, x1), (y0, y1))
+    )
+    if made.contains(*np.meshgrid(x, y)).any():
+        return False
+    box = np.array([one.bounds, other.bounds])
+    size = float((box[:, 2:] - box[:, :2]).max())
+    try:
+        shape = made.outline(_FINE * size)
+    except NoOutlineError:
+        return False
+    return bool(shape.area <= _same(one, other) * shape.length)
 
 
 @dataclass(frozen=True)
@@ -249,6 +302,9 @@ class Difference(Region):
     body: Region
     hole: Region
 
+    def __post_init__(self) -> None:
+        _require_regions(self.body, self.hole)
+
     @property
     def bounds(self) -> tuple[float, float, float, float]:
         return self.body.bounds
@@ -277,22 +333,13 @@ class _Pair(Region):
     other: Region
 
     def __post_init__(self) -> None:
-        for region in (self.one, self.other):
-            if not isinstance(region, Region):
-                raise TypeError(f"a region combines with a Region, not {type(region).__name__}")
+        _require_regions(self.one, self.other)
 
     def moved(self, by: Point, grid: float = 0.0) -> _Pair:
         return type(self)(self.one.moved(by, grid), self.other.moved(by, grid))
 
     def loosened(self) -> _Pair:
         return type(self)(self.one.loosened(), self.other.loosened())
-
-    @property
-    def _same(self) -> float:
-        """Lengths (m) that rounding may make of nothing."""
-        box = np.array([self.one.bounds, self.other.bounds])
-        size = float(np.ptp(box.reshape(-1, 2), axis=0).max())
-        return max(_EDGE * size, _ROUNDINGS * float(np.abs(box).max()))
 
 
 def without_middles(shape: shapely.Geometry, tolerance: float) -> shapely.Geometry:
@@ -345,10 +392,11 @@ class Union(_Pair):
         one, other = self.one.outline(step), self.other.outline(step)
         # Edges that coincide but for rounding would leave a slit: corners of each take the place of
         # those of the other that they lie on.
-        other = shapely.snap(other, one, self._same)
-        one = shapely.snap(one, other, self._same)
+        same = _same(self.one, self.other)
+        other = shapely.snap(other, one, same)
+        one = shapely.snap(one, other, same)
         # Where two edges go on in one line no corner is left.
-        return without_middles(shapely.union(one, other), _STRAIGHT * self._same)
+        return without_middles(shapely.union(one, other), _STRAIGHT * same)
 
     def edge_distance(self, x: Array, y: Array) -> Array:
         x0, y0, x1, y1 = self.bounds
@@ -365,19 +413,7 @@ class Union(_Pair):
 
 @dataclass(frozen=True)
 class Intersection(_Pair):
-    """What `one` and `other` have in common.
-
-    Raises
-    ------
-    ValueError
-        If that is nothing.
-    """
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        x0, y0, x1, y1 = self.bounds
-        if not (x0 < x1 and y0 < y1):
-            raise ValueError("two regions that lie apart have nothing in common")
+    """What `one` and `other` have in common."""
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
