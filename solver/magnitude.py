@@ -7,9 +7,14 @@ within them.
 
 from __future__ import annotations
 
+from numbers import Real
+from typing import Any
+
+from .errors import SceneError
+
 #: Moduli, densities and capacities, in any unit.
 MODULI = (1e-50, 1e50)
-#: Spacings, in any unit.
+#: Spacings and thicknesses, in any unit.
 LENGTHS = (1e-30, 1e30)
 #: What a load or a prescribed value makes of a cell, as a strain (or difference over its size).
 STRAINS = (1e-100, 1e100)
@@ -24,3 +29,17 @@ def outside(size: float, bounds: tuple[float, float]) -> str:
         f"of the size {size:.1e}, not between {low:g} and {high:g}: its squares and products would "
         f"leave the range of numbers; choose other units"
     )
+
+
+def require_positive(given: Any, what: str, unit: str, bounds: tuple[float, float]) -> None:
+    """Refuse what is no positive number, or leaves the bounds.
+
+    Raises
+    ------
+    SceneError
+    """
+    real = isinstance(given, Real) and not isinstance(given, bool)
+    if not (real and 0.0 < given < float("inf")):
+        raise SceneError(f"{what} must be positive ({unit}), not {given!r}")
+    if wrong := outside(float(given), bounds):
+        raise SceneError(f"{what} is {wrong}")

@@ -14,7 +14,7 @@ from ..arrays import Mask
 from ..bonds import Bonds, Factors, Surface, check_surface
 from ..errors import SceneError
 from ..geometry import Crack, Lattice, Region
-from ..magnitude import MODULI, outside
+from ..magnitude import MODULI, require_positive
 from ..material import (
     CONSTANT,
     AngularLaw,
@@ -137,12 +137,8 @@ class Description:
             given = getattr(self, name)
             if given is None:
                 continue
-            real = isinstance(given, Real) and not isinstance(given, bool)
             what = name.replace("_", " ")
-            if not (real and 0.0 < given < float("inf")):
-                raise SceneError(f"the {what} must be positive ({unit}), not {given!r}")
-            if wrong := outside(float(given), MODULI):
-                raise SceneError(f"the {what} is {wrong}")
+            require_positive(given, f"the {what}", unit, MODULI)
             if name != self.physics.storage:
                 raise SceneError(f"{self.physics.adjective} body has no {what}")
         for load in self.loads:

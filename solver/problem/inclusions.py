@@ -12,6 +12,7 @@ from ..arrays import Array
 from ..errors import SceneError
 from ..geometry import Lattice, Phases, Region
 from ..geometry.phases import moved
+from ..magnitude import MODULI, require_positive
 from ..material import (
     AngularLaw,
     Calibration,
@@ -74,11 +75,9 @@ class Inclusion:
             )
         for name, unit in (("density", "kg/m³"), ("heat_capacity", "J/(m³ K)")):
             given = getattr(self, name)
-            if given is not None and not (np.isfinite(given) and given > 0):
-                raise SceneError(
-                    f"the {name.replace('_', ' ')} of an inclusion must be positive ({unit}), not "
-                    f"{given!r}"
-                )
+            if given is not None:
+                what = f"the {name.replace('_', ' ')} of an inclusion"
+                require_positive(given, what, unit, MODULI)
 
 
 class _Scene(Composite, Protocol):

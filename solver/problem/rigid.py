@@ -168,10 +168,13 @@ def rigid_motions(bonds: Bonds, prescribed: Mask, physics: Physics) -> Array:
         size = np.abs(positions).max(initial=0.0) or lattice.spacing
         scales = physics.scales(lattice.spacing / size, components)[:, None]
         own = physics.motions(positions / size)[:, :components] * scales
+        # A point without a rotation that turns does not move.
+        moving = own.any(axis=(1, 2))
+        own = own[moving]
         seen = own[:, prescribed[:, members]]
         if (at == part).any():
             places = (_outline_nodes(bonds)[at == part] - centre) / size
-            there = physics.motions(places)[:, :components] * scales
+            there = physics.motions(places)[moving, :components] * scales
             seen = np.concatenate([seen, there[:, nodes[:, at == part]]], axis=1)
         squares, mixes = np.linalg.eigh(np.einsum("ai,bi->ab", seen, seen))
         for mix in mixes[:, squares <= _RANK * max(squares.max(), len(positions))].T:
@@ -193,17 +196,24 @@ def free_motions(positions: Array, held: Mask, physics: Physics) -> str:
     """
     size = np.abs(positions).max(initial=0.0) or 1.0
     motions = physics.motions(positions / size)[:, : len(held)]
-    motions /= np.linalg.norm(motions.reshape(len(motions), -1), axis=1)[:, None, None]
-    return _names(motions[:, held], physics)
+    size = np.linalg.norm(motions.reshape(len(motions), -1), axis=1)
+    return _names(motions[:, held], size, physics)
 
 
-def _names(seen: Array, physics: Physics) -> str:
-    """Names of the motions that leave nothing at what is held, `seen` (motions, held)."""
+def _names(seen: Array, size: Array, physics: Physics) -> str:
+    """Names of the motions that leave nothing at what is held, `seen` (motions, held).
+
+    `size` is the norm of each. One that moves nothing, as a point without a rotation that turns,
+    is none.
+    """
+    moving = size > 0.0
+    seen = seen[moving] / size[moving, None]
+    names = [name for name, moves in zip(physics.motion_names, moving, strict=True) if moves]
     squares, modes = np.linalg.eigh(np.einsum("ai,bi->ab", seen, seen))
     # Motions have the norm 1: what projections leave of nothing is rounding.
     free = squares <= _RANK * max(squares.max(), _ROUNDING)
     loose = np.abs(modes[:, free]).max(axis=1, initial=0.0)
-    return ", ".join(n for n, s in zip(physics.motion_names, loose, strict=True) if s > 1e-3)
+    return ", ".join(n for n, s in zip(names, loose, strict=True) if s > 1e-3)
 
 
 def _constrained_motions(
@@ -223,13 +233,12 @@ def _constrained_motions(
     motions = physics.motions(lattice.points - where)[:, :components]
     motions = motions * physics.scales(lattice.spacing, components)[:, None]
     motions[:, :, ~members] = 0.0
-    size = np.linalg.norm(motions.reshape(len(motions), -1), axis=1)[:, None, None]
-    motions /= size
+    size = np.linalg.norm(motions.reshape(len(motions), -1), axis=1)
     left = constraints.held(motions)
     free = prescribed & ~constraints.slaves
     seen = np.where(free, motions, left)[:, prescribed]
     if nodes.any():
         there = physics.motions(_outline_nodes(bonds) - where)[:, :components]
-        there = there * physics.scales(lattice.spacing, components)[:, None] / size
+        there = there * physics.scales(lattice.spacing, components)[:, None]
         seen = np.concatenate([seen, there[:, nodes]], axis=1)
-    return _names(seen, physics)
+    return _names(seen, size, physics)

@@ -18,7 +18,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cache
 from itertools import pairwise
-from numbers import Real
 from typing import Any, Protocol
 
 import numpy as np
@@ -30,6 +29,7 @@ from ..bonds import Bonds, Factors
 from ..errors import SceneError
 from ..geometry import Lattice
 from ..geometry.edge_quadrature import Quadrature
+from ..magnitude import LENGTHS, outside, require_positive
 from .conditions import evaluate
 
 # Share of a cell within an edge at which its thickness is asked.
@@ -65,11 +65,8 @@ def check(scene: Composite) -> None:
     """
     own = [inclusion.thickness for inclusion in scene.inclusions]
     for given in (scene.thickness, *own):
-        if given is None or callable(given):
-            continue
-        real = isinstance(given, Real) and not isinstance(given, bool)
-        if not real or not 0.0 < given < float("inf"):
-            raise SceneError(f"the thickness must be positive (m), not {given!r}")
+        if given is not None and not callable(given):
+            require_positive(given, "the thickness", "m", LENGTHS)
     if callable(scene.thickness) and any(given is not None for given in own):
         raise SceneError(
             "give the thickness as a function of the scene, or as numbers of it and its inclusions"
@@ -99,6 +96,9 @@ def at(scene: Composite, places: Array) -> Array:
         if not (found > 0).all():
             x, y = places[np.argmin(found)]
             raise SceneError(f"the thickness is {found.min():g} m at ({x:g}, {y:g})")
+        for thick in (found.min(initial=1.0), found.max(initial=1.0)):
+            if wrong := outside(float(thick), LENGTHS):
+                raise SceneError(f"the thickness is {wrong}")
         return found
     each = of_phases(scene)
     found = np.full(len(places), each[0])

@@ -1,5 +1,8 @@
 """Small scenes of every kind, sensible and not: what a user may ask, and what an answer may be.
 
+Bodies are holed, slotted, turned, united, of several solids and of any thickness; solids isotropic
+or not, polar or not.
+
 An answer is finite wherever nothing was set aside, and comes without a warning of NumPy's; a
 refusal is one line of an error that the solver raised on purpose.
 """
@@ -20,7 +23,9 @@ from solver import (
     ElasticTensor,
     ElectricConductivityTensor,
     ExpansionTensor,
+    Inclusion,
     Load,
+    PolarTensor,
     Programme,
     Scene,
     Support,
@@ -70,13 +75,42 @@ def region(rng: Generator, h: float) -> Any:
     if rng.random() < 0.2:
         slot = rectangle(pick(rng, 0.1, 0.5, 1.0) * h, h * w, tuple(rng.uniform(-2, 2, 2) * h))
         body = body - slot
+    kind = rng.integers(12)
+    if kind == 0:
+        body = body | part(rng, h)
+    elif kind == 1:
+        # Beside each other, edge to edge or nearly so.
+        x0, _, x1, _ = body.bounds
+        gap = pick(rng, 0.0, 0.0, 1e-9, -1e-9, 0.3, -0.3) * h
+        body = body | body.moved((x1 - x0 + gap, pick(rng, 0.0, 0.5 * h)))
+    elif kind == 2:
+        body = body & part(rng, h)
     return body
+
+
+def part(rng: Generator, h: float) -> Any:
+    """A shape that takes a part of most bodies."""
+    place = tuple(pick(rng, np.zeros(2), rng.uniform(-3, 3, 2), rng.integers(-3, 4, 2)) * h)
+    kind = rng.integers(5)
+    if kind == 0:
+        return disc(h * pick(rng, 0.4, 1.0, 2.0, rng.uniform(0.5, 4)), place)
+    if kind == 1:
+        return rectangle(20 * h, pick(rng, 0.2, 1.0, 2.0) * h, place)
+    if kind == 2:
+        return rectangle(40 * h, 20 * h, (place[0], place[1] + 10 * h), pick(rng, 0.0, 0.3))
+    w, t = pick(rng, rng.integers(1, 6, 2), rng.uniform(0.3, 6, 2)) * h
+    body = rectangle(w, t, place, pick(rng, 0.0, 0.0, 0.4))
+    return body - disc(0.3 * h, place) if kind == 3 else body
 
 
 def material(rng: Generator, physics: str) -> Any:
     scale = size(rng)
     if physics == "elastic":
-        kind = rng.integers(6)
+        kind = rng.integers(7)
+        if kind == 6:
+            bending = scale * 10.0 ** rng.uniform(-4, 1) * pick(rng, 1.0, 1e-18, 1e6)
+            elastic = ElasticTensor.isotropic(scale, pick(rng, 0.2, 0.0, 0.3, 0.33333333))
+            return PolarTensor(elastic, bending * np.array([[1, 0.2], [0.2, pick(rng, 0.5, 1.0)]]))
         if kind > 2:
             nu = pick(rng, 0.2, 1 / 3, 0.33333333, 0.3, 0.45, -0.3, 0.0)
             return ElasticTensor.isotropic(scale, nu, pick(rng, "stress", "strain"))
@@ -180,9 +214,36 @@ def broken(rng: Generator, share: float) -> Callable[..., Any]:
     return gone
 
 
+def inclusion(rng: Generator, physics: str, h: float, own: Any, storage: str | None) -> Inclusion:
+    solid = pick(rng, own, material(rng, physics), material(rng, physics))
+    options: dict[str, Any] = {}
+    if storage and rng.random() < 0.5:
+        options[storage] = size(rng) * rng.uniform(0.1, 10)
+    if rng.random() < 0.3:
+        options["thickness"] = size(rng) * rng.uniform(0.1, 10)
+    if rng.random() < 0.7 and physics == "elastic":
+        options["expansion"] = ExpansionTensor.isotropic(2e-5)
+    return Inclusion(part(rng, h), solid, **options)
+
+
+def thickness(rng: Generator, h: float) -> Any:
+    """A number, a step, a taper, one that ends in nothing or is not known everywhere."""
+    x0, thick = rng.uniform(-2, 2) * h, size(rng) * rng.uniform(0.1, 10)
+    return pick(
+        rng,
+        thick,
+        lambda x, y: np.where(x < x0, thick, 0.1 * thick),
+        lambda x, y: thick * (1 + 0.1 * np.sin(x / h)),
+        lambda x, y: thick * np.exp(y / h),
+        lambda x, y: thick * (x - x0) / h,
+        lambda x, y: np.sqrt(x - x0),
+    )
+
+
 def scene(rng: Generator, physics: str, timed: bool = False) -> Scene:
     h = 10.0 ** pick(rng, 0, 0, 0, 0, 0, 0, -9, 3, -3)
     options: dict[str, Any] = {}
+    solid, storage = material(rng, physics), None
     if rng.random() < 0.25:
         options["cracks"] = [
             Crack(*map(tuple, rng.uniform(-5, 5, (pick(rng, 2, 3), 2)) * h))
@@ -195,15 +256,20 @@ def scene(rng: Generator, physics: str, timed: bool = False) -> Scene:
     if rng.random() < 0.3:
         options["phase"] = tuple(rng.uniform(0, 1, 2))
     if timed:
-        name = "density" if physics == "elastic" else "heat_capacity"
-        options[name] = size(rng)
+        storage = "density" if physics == "elastic" else "heat_capacity"
+        options[storage] = size(rng)
+    if rng.random() < 0.35:
+        count = pick(rng, 1, 1, 2, 3)
+        options["inclusions"] = [inclusion(rng, physics, h, solid, storage) for _ in range(count)]
+    if rng.random() < 0.2:
+        options["thickness"] = thickness(rng, h)
     supports = [support(rng, physics, h) for _ in range(pick(rng, 0, 0, 1, 1, 2))]
     if rng.random() < 0.7:
         supports.insert(0, clamp(rng, physics, h))
     return Scene(
         region(rng, h),
         h,
-        material(rng, physics),
+        solid,
         supports,
         [load(rng, physics, h) for _ in range(rng.integers(0, 3))],
         m=pick(rng, 1, 1.5, 2, 2.5, 3, 3, 4),

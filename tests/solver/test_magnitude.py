@@ -7,10 +7,12 @@ from solver import (
     ConductivityTensor,
     ElasticTensor,
     Family,
+    Inclusion,
     Load,
     Scene,
     SceneError,
     Support,
+    disc,
     rectangle,
 )
 from solver.magnitude import MODULI, outside
@@ -35,6 +37,14 @@ def test_moduli_spacings_and_densities(size):
         lambda: ConductivityTensor.isotropic(size),
         lambda: Family(3, size),
         lambda: Scene(rectangle(6, 4), 1.0, SOLID, density=size),
+        lambda: Scene(rectangle(6, 4), 1.0, SOLID, thickness=size),
+        lambda: Scene(
+            rectangle(6, 4), 1.0, SOLID, [HELD], thickness=lambda x, y: size
+        ).discretise(),
+        lambda: Inclusion(disc(1.0), SOLID, density=size),
+        lambda: Scene(
+            rectangle(6, 4), 1.0, SOLID, inclusions=[Inclusion(disc(1), SOLID, thickness=size)]
+        ),
     )
     for make in made:
         with pytest.raises(ValueError, match="leave the range of numbers") as caught:

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from solver import ConductivityTensor, Crack, ElasticTensor, Family, Scene, SceneError, Support
 from solver.bonds import Bonds
 from solver.geometry import Lattice
-from solver.problem.rigid import parts
+from solver.material.physics import ELASTICITY
+from solver.problem.rigid import free_motions, parts, rigid_motions
 from tests.solver.bodies import Cells, block, exact, masks
 from tests.solver.bonds.test_bonds import pair_factors
 
@@ -160,3 +161,22 @@ def test_bodies_that_touch_at_a_corner_without_a_bond_are_two():
     mask[:2, :2] = mask[2:, 2:] = True
     family = Family(1, 1.0, "full")  # four neighbours, no diagonals
     assert parts(Bonds(Lattice(Cells(mask), 1.0, 1), family))[0] == 2
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_point_that_has_no_rotation_does_not_turn():
+    """Of a lone particle without shear stiffness two motions are left, and none is nothing."""
+    point = np.zeros((1, 2))
+    free = np.zeros((2, 1), dtype=bool)
+    said = "translation along 1, translation along 2"
+    assert free_motions(point, free, ELASTICITY) == said
+    assert free_motions(point, ~free, ELASTICITY) == ""
+    assert free_motions(point, np.zeros((3, 1), dtype=bool), ELASTICITY) == f"{said}, rotation"
+    mask = np.ones((6, 6), dtype=bool)
+    mask[:2] = False
+    mask[0, 0] = True
+    lattice = Lattice(Cells(mask), 1.0, 3)
+    bonds = Bonds(lattice.centred, Family(1, 1.0), [], "none")
+    found = rigid_motions(bonds, np.zeros((2, lattice.count), dtype=bool), ELASTICITY)
+    assert len(found) == 3 + 2
+    assert np.abs(found).max(axis=(1, 2)).min() > 0.1
