@@ -14,6 +14,7 @@ from ..errors import ConvergenceError
 from ..linear import Bordered, Task, method
 from ..problem import Description, Discretisation, cautions
 from ..problem.bordering import border as border_of
+from ..reactions import residual as residual_of
 from ..solution import Solution, Statistics
 from .registry import Analysis
 
@@ -81,6 +82,7 @@ def solve(
         discretisation = discretisation.moved(x[operator.shape[0] :])
     found = discretisation.field(x[: operator.shape[0]])
     warnings = discretisation.warnings + discretisation.overlaps(found)
+    warnings += _points_held(discretisation, found)
     if tolerance < residual <= method.attainable(operator, x, rhs):
         stopped = (
             f"the residual stopped at {residual:.1e}, where {tolerance:.1e} was asked for: in a "
@@ -109,6 +111,21 @@ def solve(
         warnings=warnings,
     )
     return Solution(discretisation, found, statistics, inverse)
+
+
+def _points_held(discretisation: Discretisation, found: Array) -> tuple[str, ...]:
+    """What particles that are held by themselves carry, if they do."""
+    lattice, turning = discretisation.lattice, discretisation.scene.physics.turning
+    across = ~np.array(turning[: len(found)])
+    held = (discretisation.prescribed & ~np.isnan(discretisation.values))[across].any(axis=0)
+    single = cautions.alone(lattice, held)
+    if not single.any():
+        return ()
+    exerted = residual_of(discretisation, found)[across]
+    loads = [discretisation.load[across]]
+    if discretisation.nodal_load is not None:
+        loads.append(discretisation.nodal_load[across])
+    return cautions.told(cautions.points_held(lattice, single, exerted, loads))
 
 
 def _peak_memory() -> int:

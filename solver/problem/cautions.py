@@ -30,6 +30,8 @@ _AREA = 0.01
 _OVERLAP, _STRAINED = 0.02, 0.05
 # Share of the particles whose bonds end at edges that lie on one if a row of them does.
 _IN_ROWS = 0.1
+# Share of what acts that a particle held by itself may carry without a word.
+_CARRIES = 1e-3
 # What thin members come to (m = 5, two cells thick, measured in bending).
 _THIN: dict[str, str] = {"extrapolated": "-17 %", "volume": "+25 %", "none": "+156 %"}
 
@@ -103,6 +105,8 @@ def on_edges(bonds: Bonds) -> tuple[str, ...]:
 def thin_layers(lattice: Lattice, prescribed: Mask, m: float) -> tuple[str, ...]:
     """Says so if prescribed particles lie less than a horizon deep.
 
+    A particle by itself is a point and no layer (`points_held`).
+
     Parameters
     ----------
     prescribed : ndarray of bool, shape (N,)
@@ -115,7 +119,8 @@ def thin_layers(lattice: Lattice, prescribed: Mask, m: float) -> tuple[str, ...]
     deep = ndimage.distance_transform_edt(~free)
     labels, count = ndimage.label(grid, structure=np.ones((3, 3)))
     depth = ndimage.maximum(deep, labels, np.arange(1, count + 1))
-    thin = np.nonzero(depth < np.floor(m) - 1e-9)[0]
+    several = np.bincount(labels[lattice.mask], minlength=count + 1)[1:] > 1
+    thin = np.nonzero((depth < np.floor(m) - 1e-9) & several)[0]
     if not len(thin):
         return ()
     worst = thin[np.argmin(depth[thin])]
@@ -125,6 +130,46 @@ def thin_layers(lattice: Lattice, prescribed: Mask, m: float) -> tuple[str, ...]
         f"what is prescribed about ({x:.4g}, {y:.4g}){more} lies {depth[worst]:.2g} cell(s) deep, "
         f"less than the horizon of {m:g}: bonds of free particles reach past it, and it holds "
         f"them less firmly than a boundary",
+    )
+
+
+def alone(lattice: Lattice, prescribed: Mask) -> Mask:
+    """Those of some particles, shape (N,), that have none of the others beside them."""
+    grid = np.zeros(lattice.shape, dtype=np.int8)
+    grid[lattice.mask] = prescribed
+    beside = ndimage.convolve(grid, np.ones((3, 3), dtype=np.int8), mode="constant")
+    return np.asarray(prescribed & (beside[lattice.mask] == 1))
+
+
+def points_held(
+    lattice: Lattice, single: Mask, exerted: Array, loads: Sequence[Array]
+) -> tuple[str, ...]:
+    """Says so if a particle that is held by itself carries anything to speak of.
+
+    Holding a body that is in equilibrium by itself it carries nothing, and is no fault.
+
+    Parameters
+    ----------
+    single : ndarray of bool, shape (N,)
+        See `alone`.
+    exerted : ndarray, shape (components, N)
+        What supports exert on each; forces alone, no couples.
+    loads : sequence of ndarray, shape (components, n)
+        All that acts.
+    """
+    size = np.linalg.norm(np.nan_to_num(exerted), axis=0)
+    acting = sum(float(np.linalg.norm(load, axis=0).sum()) for load in loads)
+    whole = max(0.5 * (size.sum() + acting), np.finfo(np.float64).tiny)
+    worst = int(np.argmax(np.where(single, size, -1.0)))
+    if size[worst] <= _CARRIES * whole:
+        return ()
+    x, y = lattice.places[worst]
+    count = int((single & (size > _CARRIES * whole)).sum())
+    more = f" (and {count - 1} others)" if count > 1 else ""
+    return (
+        f"the single particle held at ({x:.4g}, {y:.4g}){more} carries {size[worst] / whole:.2g} "
+        f"of what acts: at a point its field grows without bound as the spacing falls, so that "
+        f"the answer near it, and what it holds back, depend on the spacing",
     )
 
 

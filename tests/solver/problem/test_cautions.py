@@ -64,6 +64,28 @@ def test_a_layer_thinner_than_a_horizon():
             assert "about (" in found[0]
 
 
+def single(x0, y0):
+    return lambda x, y: (abs(x - x0) < 0.03) & (abs(y - y0) < 0.03)
+
+
+@pytest.mark.parametrize("surface", ["none", "extrapolated"])
+def test_a_particle_held_by_itself_is_told_of_if_it_carries_something(surface):
+    pins = [
+        Support.where(single(-0.475, -0.475), displacement=0.0),
+        Support.where(single(0.475, -0.475), u2=0.0),
+    ]
+    pull = Load.stress((1.0, 0.0, 0.0))
+    assert warnings(supports=pins, loads=[pull], surface=surface) == ()
+    clamp = Support.where(single(-0.475, -0.475), displacement=0.0, rotation=0.0)
+    right = Load.stress((1.0, 0.0, 0.0), where=rectangle(0.1, 2.0, (0.5, 0.0)))
+    (found,) = warnings(supports=[clamp], loads=[right], surface=surface)
+    assert "single particle held at (-0.475, -0.475) carries 1 of what acts" in found
+    # What it is moved by acts, too.
+    moved = Support.where(single(0.025, 0.275), displacement=(0.0, 0.1))
+    (found,) = warnings(supports=[HELD, moved], loads=[], surface=surface)
+    assert "(0.025, 0.275) carries 0.9" in found
+
+
 def test_a_member_thinner_than_two_horizons():
     def clamp(cells):
         # A C: jaws of 6 cells, and a back of some over a length of 18.
