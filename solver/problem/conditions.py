@@ -275,19 +275,39 @@ class Support:
         return found
 
 
-def _volumes(lattice: Lattice, within: Region | None, phases: Phases | None) -> Array:
-    """`volumes`, remembered; in a body of several phases each particle's share of its own."""
-    key = "volumes", id(within)
+def particle_volumes(
+    lattice: Lattice, true_edges: bool, phases: Phases | None = None, within: Region | None = None
+) -> Array:
+    """Area of the body that each particle stands for, shape (N,), cells; remembered.
+
+    Parameters
+    ----------
+    lattice : Lattice
+    true_edges : bool
+        Whether the body ends where it is drawn (``extrapolated``), and not with its outermost
+        cells.
+    phases : Phases, optional
+        Of a body of several. Interfaces are where they are drawn with every treatment: a cell
+        that one cuts is shared out between its sides.
+    within : Region, optional
+        Count only what lies in it, where edges are as drawn.
+    """
+    if not true_edges and phases is None:
+        return np.ones(lattice.count)
+    key = f"volumes {true_edges}", id(within)
     if key not in lattice.known:
         if phases is None:
-            of_each = volumes(lattice, within)
+            found = volumes(lattice, within)
         else:
-            of_each = np.zeros(lattice.count)
+            found = np.zeros(lattice.count)
             for k, part in enumerate(phases.lattices):
-                of_each[phases.of == k] = volumes(part, within)
-        lattice.known[key] = within, of_each
-    found: Array = lattice.known[key][1]
-    return found
+                found[phases.of == k] = volumes(part, within)
+            if not true_edges:
+                # What passes over interfaces, of bodies whose edges are as drawn.
+                found += 1.0 - volumes(lattice)
+        lattice.known[key] = within, found
+    known: Array = lattice.known[key][1]
+    return known
 
 
 @dataclass(frozen=True)
@@ -362,15 +382,13 @@ class Load:
         ) -> tuple[Mask, Array]:
             everywhere = np.ones(lattice.count, dtype=bool)
             mask = everywhere if where is None else select(lattice, where)
-            volume = np.ones(lattice.count)
-            if true_edges:
-                # One value a particle goes with the particles that the region holds.
-                listed = not callable(value) and np.ndim(value) >= min(components, 2)
-                if isinstance(where, Region) and not listed:
-                    volume = _volumes(lattice, where, phases)
-                    mask = volume > 0
-                else:
-                    volume = _volumes(lattice, None, phases)
+            # One value a particle goes with the particles that the region holds.
+            listed = not callable(value) and np.ndim(value) >= min(components, 2)
+            if true_edges and isinstance(where, Region) and not listed:
+                volume = particle_volumes(lattice, True, phases, where)
+                mask = volume > 0
+            else:
+                volume = particle_volumes(lattice, true_edges, phases)
             if not mask.any():
                 raise SceneError(f"a {kind} acts on no particle")
             acting = evaluate(value, lattice.places[mask], components, f"a body {kind}")
@@ -385,8 +403,8 @@ class Load:
         With ``extrapolated`` surfaces, where edges lie as drawn, all loads in the body act on its
         area (`solver.geometry.strips`): a constant one adds up to density × area, whether or not
         the body, or the region `where`, is a whole number of cells; each inclusion carries what
-        acts on its own area, with its own thickness. Treatments that let the body
-        end at its outermost cells load whole cells.
+        acts on its own area, with its own thickness. Treatments that let the body end at its
+        outermost cells load whole cells, but for those that an interface cuts.
         """
         return cls._body("force", force, 2, where)
 

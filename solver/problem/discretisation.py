@@ -11,15 +11,13 @@ import numpy as np
 from ..arrays import Array, Mask
 from ..bonds import Bonds
 from ..errors import MechanismError, SceneError
-from ..geometry import (
-    Lattice,
-    volumes,
-)
+from ..geometry import Lattice
 from ..material import Family, Moduli, Stability
 from ..operators import BondOperator
 from ..operators.eigenstrain import Eigenstrain
 from . import cautions, inclusions, leads, loading, mechanisms, thickness
 from . import constraints as constraints_of
+from .conditions import particle_volumes
 from .constraints import Constraints
 from .description import Description
 
@@ -211,16 +209,10 @@ class Discretisation:
 
         Loads in the body, and its mass, act on it. With ``extrapolated`` surfaces the sum is the
         area of the body (`solver.geometry.strips`); the other treatments let the body end at its
-        outermost cells, and every particle is a whole one.
+        outermost cells, and every particle is a whole one, unless an interface cuts its cell.
         """
-        if self.scene.surface != "extrapolated":
-            return np.ones(self.lattice.count)
-        if self.bonds.phases is None:
-            return volumes(self.lattice)
-        found = np.zeros(self.lattice.count)
-        for k, part in enumerate(self.bonds.phases.lattices):
-            found[self.bonds.phases.of == k] = volumes(part)
-        return found
+        true_edges = self.scene.surface == "extrapolated"
+        return particle_volumes(self.lattice, true_edges, self.bonds.phases)
 
     def storage(self, name: str) -> Array:
         """`volumes` times thickness and density (or heat capacity) over the scene's own, (N,).
@@ -255,6 +247,7 @@ class Discretisation:
                 *cautions.on_edges(self.bonds),
                 *cautions.thin_layers(lattice, given, scene.m),
                 *cautions.thin_members(lattice, scene.m, scene.surface),
+                *leads.cautions(scene, lattice),
             )
         )
 

@@ -13,7 +13,7 @@ So its strength has the factor |ξ|/ℓ, for any treatment of surfaces, and for 
 unknown. A bond that passes through the metal carries nothing from end to end: each end has its
 own part, to V, which is added to another of its bonds to the lead. The lattice is then the one
 whose body has a hole with a held edge in the lead's place, to rounding. Held particles without this
-act like a lead that is larger by a share of the horizon.
+act like a lead that is smaller by a share of the horizon.
 """
 
 from __future__ import annotations
@@ -78,38 +78,75 @@ def check(scene: Description, lattice: Lattice, prescribed: Mask) -> None:
 def rimmed(scene: Description, bonds: Bonds, moduli: Moduli) -> Bonds:
     """Bonds that end at the rims of the leads on metal.
 
-    Leads that are given by a condition have no rim that could be known: theirs stay as they are.
+    The rim of a lead that is given by a condition is not known: that of its particles' cells
+    stands for it, and `cautions` says so.
 
     Raises
     ------
     SceneError
         If the body has inclusions.
     """
+    lattice = bonds.lattice
     for support in scene.supports:
-        region = support.electrode
-        if isinstance(region, Region):
-            try:
-                drawn = region.outline(scene.spacing / 16)
-            except NoOutlineError:
-                continue
-            if scene.inclusions:
-                raise SceneError(
-                    "leads on metal (Support.lead) are not known in a body with inclusions: their "
-                    "rims would meet other conductors"
-                )
-            bonds = _rimmed(bonds, moduli, region, drawn)
+        where = support.electrode
+        if where is None:
+            continue
+        if scene.inclusions:
+            raise SceneError(
+                "leads on metal (Support.lead) are not known in a body with inclusions: their "
+                "rims would meet other conductors"
+            )
+        inside, metal = select(lattice, where), _drawn(where, scene.spacing / 16)
+        if metal is None:
+            metal = _cells(lattice, inside)
+        else:
+            metal = shapely.transform(metal, lambda points: points - lattice.shift)
+        bonds = _rimmed(bonds, moduli, inside, metal)
     return bonds
 
 
-def _rimmed(bonds: Bonds, moduli: Moduli, region: Region, drawn: shapely.Geometry) -> Bonds:
-    """The same with one lead's rim."""
+def cautions(scene: Description, lattice: Lattice) -> tuple[str, ...]:
+    """Says which leads on metal have a rim that is known to half a cell only."""
+    found = []
+    for support in scene.supports:
+        where = support.electrode
+        if where is None or _drawn(where, scene.spacing) is not None:
+            continue
+        mask = select(lattice, where)
+        across = np.sqrt(mask.sum())
+        found.append(
+            f"the lead about {_middle(lattice, mask)} is given by a condition, {across:.2g} cells "
+            f"across: the edges of its cells stand for its rim, which is known to half a cell, "
+            f"its size to {1 / across:.0%} (a Region says where it is)"
+        )
+    return tuple(found)
+
+
+def _drawn(where: Where, step: float) -> shapely.Geometry | None:
+    """A lead's outline in the user's coordinates, if it has one."""
+    if not isinstance(where, Region):
+        return None
+    try:
+        return where.outline(step)
+    except NoOutlineError:
+        return None
+
+
+def _cells(lattice: Lattice, mask: Mask) -> shapely.Geometry:
+    """The cells of some particles, in the (centred) lattice's coordinates."""
+    # Corners are whole numbers of cells: those of neighbours are the same bits.
+    corner = np.rint(lattice.points[mask] / lattice.spacing - 0.5)
+    low, high = corner * lattice.spacing, (corner + 1) * lattice.spacing
+    return shapely.union_all(shapely.box(*low.T, *high.T))
+
+
+def _rimmed(bonds: Bonds, moduli: Moduli, inside: Mask, metal: shapely.Geometry) -> Bonds:
+    """The same with the rim of one lead, of some particles and with an outline."""
     lattice, family = bonds.lattice, bonds.family
-    shift, half = np.array(lattice.shift), family.size // 2
-    metal = shapely.transform(drawn, lambda points: points - shift)
+    half = family.size // 2
     shapely.prepare(metal)
     points, number = lattice.points, lattice.number()
     rows, columns = lattice.rows_columns
-    inside = select(lattice, region)
     reach = float(family.length.max()) * (1 + _TIE)
     near = np.nonzero(~inside & (shapely.distance(shapely.points(points), metal) <= reach))[0]
     if not len(near):
@@ -185,5 +222,6 @@ def _beside(lattice: Lattice, mask: Mask) -> Mask:
 
 
 def _middle(lattice: Lattice, mask: Mask) -> str:
-    x, y = lattice.places[mask].mean(axis=0)
+    middle = lattice.places[mask].mean(axis=0)
+    x, y = np.where(np.abs(middle) < 1e-9 * lattice.spacing, 0.0, middle)
     return f"({x:.4g}, {y:.4g})"

@@ -319,3 +319,31 @@ def test_leads_on_a_body_with_inclusions_are_refused():
     )
     with pytest.raises(SceneError, match=r"leads on metal .* with inclusions"):
         scene.solve()
+
+
+@few
+@given(
+    st.tuples(st.floats(-0.6, 0.6), st.floats(-0.3, 0.3)),
+    st.floats(0.15, 0.6),
+    st.floats(0, 3),
+    st.sampled_from(TREATMENTS),
+)
+def test_what_acts_and_weighs_acts_on_the_area_of_each_solid(place, size, angle, treatment):
+    """Interfaces lie where they are drawn whatever the edges do: cells that they cut are shared."""
+    inner, thick = rectangle(size, 0.7 * size, place, angle), 3.0
+    parts = Discretisation.of(
+        Scene(
+            rectangle(2.0, 1.4), 0.1, SOLID, [Support.layer(1.0, displacement=0.0)],
+            [Load.body_force((0.0, -1.0))], m=2, surface=treatment, density=2.0,
+            inclusions=[Inclusion(inner, SOLID, density=10.0, thickness=thick)], thickness=1.0,
+        )
+    )  # fmt: skip
+    inside = parts.bonds.phases.of == 1
+    area, whole = 0.7 * size**2, 2.8
+    assert parts.volumes.min() > 0.1
+    assert parts.volumes[inside].sum() * 0.01 == pytest.approx(area, rel=1e-9)
+    assert parts.volumes.sum() * 0.01 == pytest.approx(whole, rel=1e-9)
+    mass = 2.0 * parts.storage("density").sum() * 0.01
+    assert mass == pytest.approx(2.0 * (whole - area) + 10.0 * thick * area, rel=1e-9)
+    weight = -parts.load[1].sum() * 0.01
+    assert weight == pytest.approx(whole - area + thick * area, rel=1e-9)
