@@ -12,6 +12,7 @@ from typer.core import TyperGroup
 
 import cmverify
 from cmverify.case import Level
+from cmverify.exchange.command import new, schema
 from cmverify.faults.command import faults
 from cmverify.studies.speed.command import speed
 from cmverify.studies.stability.command import stability
@@ -48,6 +49,8 @@ Folder = Annotated[Path, typer.Option("--out", help="Folder of the run and its r
 
 
 app.command()(faults)
+app.command()(new)
+app.command()(schema)
 app.command()(speed)
 app.command()(stability)
 

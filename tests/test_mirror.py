@@ -51,6 +51,9 @@ ELSEWHERE = {
     "cmverify/report/terminal.py": "tests/cmverify/test_cli.py",
     # Commands and what they run.
     "cmverify/doctor.py": "tests/cmverify/test_cli.py",
+    "cmverify/exchange/command.py": "tests/cmverify/exchange/test_start_file.py",
+    "cmverify/exchange/meanings.py": "tests/cmverify/exchange/test_schema.py",
+    "cmverify/exchange/reference_page.py": "tests/cmverify/exchange/test_schema.py",
     "cmverify/exchange/export.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/exchange/refusal.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/run/threads.py": "tests/cmverify/run/test_runner.py",

@@ -11,11 +11,13 @@ import types
 from collections.abc import Callable, Sequence
 from functools import cache
 from inspect import Parameter
+from math import inf
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import Field, StrictBool, create_model
 
-from cmverify.exchange.model import SceneFile, Table
+from cmverify.exchange.meanings import meanings
+from cmverify.exchange.model import Fracture, SceneFile, Table
 from cmverify.exchange.values import (
     Condition,
     Count,
@@ -35,15 +37,20 @@ def scene_model() -> type[SceneFile]:
     from solver.analyses import analyses
 
     tables: dict[str, Any] = {
-        name: (table_of(name, analysis.says, analysis.options) | None, None)
+        name: (
+            table_of(name, analysis.says, analysis.options, meanings(analysis.run)) | None,
+            None,
+        )
         for name, analysis in analyses().items()
         if name not in SceneFile.model_fields
     }
     return create_model("SceneFile", __base__=SceneFile, __doc__=SceneFile.__doc__, **tables)
 
 
-def table_of(name: str, says: str, options: dict[str, Parameter]) -> type[Table]:
-    """A table whose keys are some keywords.
+def table_of(
+    name: str, says: str, options: dict[str, Parameter], means: dict[str, str] | None = None
+) -> type[Table]:
+    """A table whose keys are some keywords, with what they mean.
 
     Raises
     ------
@@ -53,7 +60,12 @@ def table_of(name: str, says: str, options: dict[str, Parameter]) -> type[Table]
     keys: dict[str, Any] = {}
     for key, option in options.items():
         default = ... if option.default is Parameter.empty else option.default
-        keys[key] = (kind_of(key, option.annotation), Field(default=default))
+        said = (means or {}).get(key) or None
+        if said and said.startswith("As of") and key in Fracture.model_fields:
+            said = Fracture.model_fields[key].description
+        if default == inf:  # which JSON does not know
+            default = None
+        keys[key] = (kind_of(key, option.annotation), Field(default=default, description=said))
     return create_model(f"{name.title()}Table", __base__=Table, __doc__=says, **keys)
 
 

@@ -46,6 +46,11 @@ _LONGEST, _NODES, _DEEPEST = 2_000, 400, 60
 _AND = "write (x < 1) * (y < 2) for 'and', (x < 1) + (y < 2) for 'or'"
 
 
+def names() -> tuple[str, ...]:
+    """Constants and functions that a formula may use."""
+    return (*_CONSTANTS, *_FUNCTIONS)
+
+
 class FormulaError(ValueError):
     """A text that is no formula, or a formula without a value where one is needed."""
 

@@ -90,7 +90,7 @@ class Disc(_Shape):
 
 
 class Rectangle(_Shape):
-    """A rectangle with sides along the axes."""
+    """A rectangle, its sides along the axes unless it is turned."""
 
     shape: Literal["rectangle"]
     width: Positive = Field(description="m")
@@ -171,6 +171,7 @@ class _Massive(Table):
     bending: Matrix2 | None = Field(
         default=None,
         description="Of a polar solid: [[E3131, E3132], [E3132, E3232]], N, before it is turned",
+        examples=[[[1.0, 0.0], [0.0, 1.0]]],
     )
 
 
@@ -576,7 +577,9 @@ class Line(Table):
 class Output(Table):
     """What is written, and how stresses are recovered."""
 
-    fields: list[FileName] | None = Field(default=None, description="By name; all by default")
+    fields: list[FileName] | None = Field(
+        default=None, description="By name; all by default", examples=[["displacement"]]
+    )
     stress_rule: Literal["plane", "family"] | None = Field(
         default=None,
         description="Force through a section, or half the virial of a particle's own bonds; by "

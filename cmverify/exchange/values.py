@@ -214,7 +214,7 @@ NotNegative = Annotated[
 Count = Annotated[int, BeforeValidator(count), Field(json_schema_extra={"minimum": 1})]
 FileName = Annotated[str, BeforeValidator(file_name)]
 Scalar = Annotated[Any, PlainValidator(scalar), _schema(**_VALUE)]
-Condition = Annotated[Any, PlainValidator(condition), _schema(type="string")]
+Condition = Annotated[Any, PlainValidator(condition), _schema(type="string", format="condition")]
 Vector = Annotated[Any, PlainValidator(components(2)), _schema(**_list(_VALUE, 2))]
 ScalarInTime = Annotated[Any, PlainValidator(scalar_in_time), _schema(**_VALUE_IN_TIME)]
 VectorInTime = Annotated[

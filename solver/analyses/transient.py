@@ -195,6 +195,8 @@ def run(
         Fields are written there for ParaView as the run goes, a .pvd and a .vtu for each time.
     checkpoint : path, optional
         The state is kept there every `every` steps; a run that finds one goes on from it.
+    every : int
+        Steps between two states that are kept.
     progress : callable, optional
         Told the share that is done.
 

@@ -25,7 +25,9 @@ def test_the_schema_knows_every_table_and_key():
     assert tables["Disc"]["properties"]["radius"]["exclusiveMinimum"] == 0
     assert tables["Support"]["additionalProperties"] is False
     assert tables["Discretisation"]["required"] == ["spacing"]
-    assert {"type": "string"} in tables["Source"]["properties"]["where"]["anyOf"]
+    assert {"type": "string", "format": "condition"} in tables["Source"]["properties"]["where"][
+        "anyOf"
+    ]
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda p: p.name)

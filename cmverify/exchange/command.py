@@ -1,0 +1,72 @@
+"""`cmverify new` and `cmverify schema`: files to start from, and what they may say."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import typer
+
+
+def new(
+    kind: Annotated[
+        str | None, typer.Argument(metavar="[KIND]", help="Without one, the kinds are listed.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="File to write; KIND.toml.")] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the file.")] = False,
+) -> None:
+    """Write a commented scene file to start from."""
+    import difflib
+
+    from cmverify.exchange import start_file
+    from cmverify.run import results
+
+    if kind is None:
+        width = max(map(len, start_file.KINDS))
+        for name, (says, _) in start_file.KINDS.items():
+            typer.echo(f"{name:<{width}}  {says}")
+        return
+    if kind not in start_file.KINDS:
+        near = difflib.get_close_matches(kind, start_file.KINDS, n=1)
+        hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(start_file.KINDS)}"
+        _refuse(f"there is no kind {kind!r}; {hint}")
+    path = out or Path(f"{kind}.toml")
+    if path.exists() and not overwrite:
+        _refuse(f"{path} exists already: choose another --out, or --overwrite")
+    try:
+        results.write_text(path, start_file.text(kind))
+    except OSError as error:
+        _refuse(f"{path} cannot be written: {error.strerror or error}")
+    typer.echo(f"wrote {path}; solve it with: cmverify solve {path}")
+
+
+def schema(
+    out: Annotated[Path | None, typer.Option(help="File to write; the terminal.")] = None,
+    folder: Annotated[
+        Path | None, typer.Option(help="Write scene.schema.json and scene-files.md there.")
+    ] = None,
+) -> None:
+    """Give the JSON schema of scene files, for editors, and their reference page."""
+    from cmverify.exchange import reference_page
+    from cmverify.exchange import schema as declared
+    from cmverify.run import results
+
+    wanted = {}
+    if folder is not None:
+        wanted[folder / "scene.schema.json"] = declared.as_text()
+        wanted[folder / "scene-files.md"] = reference_page.page()
+    if out is not None:
+        wanted[out] = declared.as_text()
+    if not wanted:
+        typer.echo(declared.as_text(), nl=False)
+    for path, text in wanted.items():
+        try:
+            results.write_text(path, text)
+        except OSError as error:
+            _refuse(f"{path} cannot be written: {error.strerror or error}")
+        typer.echo(f"wrote {path}")
+
+
+def _refuse(message: str) -> NoReturn:
+    typer.secho(f"error: {message}", fg=typer.colors.RED, err=True)
+    raise typer.Exit(2)
