@@ -15,6 +15,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from cmverify.exchange.statement import Pose
+
 Array = NDArray[np.float64]
 
 
@@ -198,7 +200,7 @@ class Method:
     ----------
     name : str
         Such as "bond/lattice" or "fem/P2".
-    kind : "bond", "fem" or "exact"
+    kind : "bond", "fem", "exact" or, of an answer that another program gave, "other"
     run : callable
         Takes a resolution n (spacing or mesh size a/n) and returns a `Measurement`.
     resolutions : mapping from Level to a tuple of ascending n
@@ -207,7 +209,7 @@ class Method:
     """
 
     name: str
-    kind: Literal["bond", "fem", "exact"]
+    kind: Literal["bond", "fem", "exact", "other"]
     run: Callable[[int], Measurement]
     resolutions: Mapping[Level, tuple[int, ...]]
     warm_up: Callable[[], None] = nothing_to_compile
@@ -314,6 +316,9 @@ class Case:
         The length that resolutions divide: spacing = length/n.
     timed : bool
         Whether its seconds mean anything and belong in a work-precision diagram.
+    poses : tuple of Pose
+        Its problems as other programs are told them (`cmverify export`), the main one first;
+        none if what it shows is no answer to a problem.
     """
 
     name: str
@@ -330,6 +335,7 @@ class Case:
     tags: tuple[str, ...] = ()
     length: str = "a"
     timed: bool = True
+    poses: tuple[Pose, ...] = ()
 
     def __post_init__(self) -> None:
         names = [method.name for method in self.methods]
@@ -344,6 +350,9 @@ class Case:
                 raise ValueError(f"case {self.name}: check of unknown method {check.method!r}")
             if check.quantity not in self.quantities:
                 raise ValueError(f"case {self.name}: check of undescribed {check.quantity!r}")
+        for pose in self.poses:
+            if pose.method not in names:
+                raise ValueError(f"case {self.name}: problem of unknown method {pose.method!r}")
 
     def method(self, name: str) -> Method:
         """The method of that name; KeyError if there is none."""

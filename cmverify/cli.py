@@ -13,6 +13,7 @@ from typer.core import TyperGroup
 import cmverify
 from cmverify.case import Level
 from cmverify.exchange.command import new, schema
+from cmverify.exchange.compare_command import compare, export
 from cmverify.faults.command import faults
 from cmverify.studies.speed.command import speed
 from cmverify.studies.stability.command import stability
@@ -48,6 +49,8 @@ Names = Annotated[list[str] | None, typer.Argument(metavar="[CASE]...", help="Ca
 Folder = Annotated[Path, typer.Option("--out", help="Folder of the run and its report.")]
 
 
+app.command()(compare)
+app.command()(export)
 app.command()(faults)
 app.command()(new)
 app.command()(schema)

@@ -55,6 +55,8 @@ ELSEWHERE = {
     "cmverify/exchange/meanings.py": "tests/cmverify/exchange/test_schema.py",
     "cmverify/exchange/reference_page.py": "tests/cmverify/exchange/test_schema.py",
     "cmverify/exchange/export.py": "tests/cmverify/exchange/test_scene_file.py",
+    "cmverify/exchange/compare_command.py": "tests/cmverify/exchange/test_compare.py",
+    "cmverify/exchange/statement.py": "tests/cmverify/exchange/test_case_export.py",
     "cmverify/exchange/refusal.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/run/threads.py": "tests/cmverify/run/test_runner.py",
 }

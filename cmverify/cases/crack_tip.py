@@ -30,10 +30,11 @@ from cmverify.case import (
 )
 from cmverify.cases.common import adapters, materials, sif, warm
 from cmverify.cases.common.scenes import cracked_disc
+from cmverify.exchange.statement import Pose, Statement, Target, free_particles
 from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
-    from solver import Solution
+    from solver import Scene, Solution
     from solver.bonds import Surface
     from solver.material import Calibration
 
@@ -105,8 +106,8 @@ def stress_ahead(
     return {"stress ahead": float(np.max(np.abs(stress22(near) / reference - 1.0)))}
 
 
-def solve(problem: Problem, calibration: Calibration, surface: Surface, n: int) -> Solution:
-    """The bond solution at spacing a/n."""
+def scene_of(problem: Problem, calibration: Calibration, surface: Surface, n: int) -> Scene:
+    """The cracked disc at spacing a/n."""
     from solver import ElasticTensor, Support
 
     layer = Support.layer(
@@ -121,7 +122,29 @@ def solve(problem: Problem, calibration: Calibration, surface: Surface, n: int) 
         m=HORIZON_CELLS,
         calibration=calibration,
         surface=surface,
-    ).solve(tolerance=1e-10)
+    )
+
+
+def solve(problem: Problem, calibration: Calibration, surface: Surface, n: int) -> Solution:
+    """The bond solution at spacing a/n."""
+    return scene_of(problem, calibration, surface, n).solve(tolerance=1e-10)
+
+
+def state(problem: Problem, n: int) -> Statement:
+    """The cracked disc, and what is judged of an answer."""
+    scene = scene_of(problem, "lattice", "volume", n)
+    points = free_particles(scene)
+    u, rotation = problem.displacement(*points.T), problem.rotation(*points.T)
+    wanted = np.array([problem.KI, problem.KII])
+    return Statement(
+        scene,
+        (
+            Target("displacement", "displacement", "K√a/C", u, points=points, columns=("u1", "u2")),
+            Target("rotation", "rotation", "K/(C√a)", rotation, points=points, needed=False),
+            Target("K", "K", "K", wanted, needed=False),
+        ),
+        remarks=("Units: a = 1, C = 1, K = 1.",),
+    )
 
 
 def displacement_error(problem: Problem, solution: Solution) -> float:
@@ -419,6 +442,7 @@ def _case(mode: str, problem: Problem, bounds: dict[int, float], shows: str) -> 
         quantities=QUANTITIES,
         primary="displacement",
         featured="bond/lattice",
+        poses=(Pose("bond/lattice", partial(state, problem)),),
     )
 
 

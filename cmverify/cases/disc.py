@@ -29,6 +29,7 @@ from cmverify.case import (
     OrderBand,
 )
 from cmverify.cases.common import adapters, materials, warm
+from cmverify.exchange.statement import Pose, Statement, Target, free_particles
 from cmverify.judge.norms import relative_l2
 
 if TYPE_CHECKING:
@@ -58,13 +59,13 @@ class Problem:
         return np.asarray(self.exact().source(x, y))
 
 
-def bond(problem: Problem, calibration: Calibration, n: int) -> Measurement:
-    """Solve with the bond solver at spacing a/n and compare with the closed form."""
-    from solver import ConductivityTensor, Load, Scene, Support, disc, recovery
+def scene_of(problem: Problem, calibration: Calibration, n: int) -> Any:
+    """The disc at spacing a/n."""
+    from solver import ConductivityTensor, Load, Scene, Support, disc
     from solver.material import Cosine
 
     exact = problem.exact()
-    scene = Scene(
+    return Scene(
         region=disc(1.0),
         spacing=1.0 / n,
         m=5,
@@ -76,7 +77,14 @@ def bond(problem: Problem, calibration: Calibration, n: int) -> Measurement:
         supports=[Support.layer(cells=adapters.LAYER_CELLS, temperature=exact.value)],
         loads=[Load.source(problem.source)] if problem.heated else [],
     )
-    solution = scene.solve(tolerance=1e-13)
+
+
+def bond(problem: Problem, calibration: Calibration, n: int) -> Measurement:
+    """Solve with the bond solver at spacing a/n and compare with the closed form."""
+    from solver import recovery
+
+    exact = problem.exact()
+    solution = scene_of(problem, calibration, n).solve(tolerance=1e-13)
     seconds = adapters.solver_seconds(solution.statistics)
     with adapters.stopwatch(seconds, "recovery"):
         flux = recovery.flux(solution, rule="consistent")
@@ -122,6 +130,20 @@ def bond(problem: Problem, calibration: Calibration, n: int) -> Measurement:
                 "$|q|$ (W/m²)",
                 by_rows(magnitude, exact_magnitude, (0.0, 0.5)),
             ),
+        ),
+    )
+
+
+def state(problem: Problem, n: int) -> Statement:
+    """The disc, and what is judged of an answer."""
+    exact, scene = problem.exact(), scene_of(problem, "positive", n)
+    points = free_particles(scene)
+    temperature, flux = exact.value(*points.T), exact.flux(*points.T)
+    return Statement(
+        scene,
+        (
+            Target("temperature", "temperature", "K", temperature, points=points, columns=("T",)),
+            Target("flux", "flux", "W/m²", flux, points=points, columns=("q1", "q2"), needed=False),
         ),
     )
 
@@ -257,6 +279,7 @@ CASES = (
         quantities=QUANTITIES,
         primary="temperature",
         featured="bond/positive",
+        poses=(Pose("bond/positive", partial(state, CUBIC)),),
     ),
     Case(
         name="disc-source",
@@ -274,6 +297,7 @@ CASES = (
         quantities=QUANTITIES,
         primary="temperature",
         featured="bond/positive",
+        poses=(Pose("bond/positive", partial(state, PRINTED)),),
     ),
     Case(
         name="disc-exponential",
@@ -301,5 +325,6 @@ CASES = (
         quantities=QUANTITIES,
         primary="temperature",
         featured="bond/positive",
+        poses=(Pose("bond/positive", partial(state, EXPONENTIAL)),),
     ),
 )

@@ -12,11 +12,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from cmverify.case import Array, Case, Check, Level, Measurement, Method
 from cmverify.cases.common import adapters
+from cmverify.exchange.statement import Pose, Statement, Target, free_particles
 from cmverify.judge.norms import relative_l2, worst
 
 SIGNS = ("positive", "zero", "negative")
@@ -52,19 +54,26 @@ def random_tensors(sign: str) -> Iterator[Array]:
             yield voigt / np.linalg.norm(voigt)
 
 
-def error(voigt: Array, generator: np.random.Generator, n: int, distortion: float) -> dict:
-    """Relative L2 errors of displacement and rotation of one random field, and the solution."""
+def problems(sign: str) -> Iterator[tuple[Array, Any]]:
+    """Tensors of one sign, each with a random quadratic field in equilibrium."""
     from references.analytic.elasticity import combine, equilibrium_polynomials
+
+    generator = np.random.default_rng(SEED)
+    for _, voigt in zip(range(ATTEMPTS), random_tensors(sign), strict=False):
+        fields = [f for degree in (1, 2) for f in equilibrium_polynomials(voigt, degree)]
+        yield voigt, combine(fields, generator.normal(size=len(fields)).tolist())
+
+
+def scene_of(voigt: Array, exact: Any, n: int, distortion: float = 1.0) -> Any:
+    """The square that a field of one tensor holds at its edges."""
     from solver import ElasticTensor, Scene, Support, UniformShear, rectangle
 
     # With Cauchy's symmetry the two-harmonic k_t varies as cos 4 psi about zero and leaves the
     # rotation block singular; the uniform-shear law has no shear bonds then.
     cauchy = voigt[2, 2] == voigt[0, 1]
-    fields = [f for degree in (1, 2) for f in equilibrium_polynomials(voigt, degree)]
-    exact = combine(fields, generator.normal(size=len(fields)).tolist())
     given = voigt.copy()
     given[0, 0] *= distortion
-    scene = Scene(
+    return Scene(
         region=rectangle(1.0, 1.0),
         spacing=1.0 / n,
         m=3,
@@ -75,7 +84,11 @@ def error(voigt: Array, generator: np.random.Generator, n: int, distortion: floa
             Support.layer(cells=3.5, displacement=exact.displacement, rotation=exact.rotation)
         ],
     )
-    solution = scene.solve(tolerance=1e-13)
+
+
+def error(voigt: Array, exact: Any, n: int, distortion: float) -> dict:
+    """Relative L2 errors of displacement and rotation of one random field, and the solution."""
+    solution = scene_of(voigt, exact, n, distortion).solve(tolerance=1e-13)
     free = ~solution.prescribed
     x, y = solution.points[free].T
     found = {"displacement": relative_l2(solution.displacement[free], exact.displacement(x, y))}
@@ -96,13 +109,12 @@ def patch(problem: Patch, n: int) -> Measurement:
     """
     from solver import CalibrationError, InadmissibleMaterialError
 
-    generator = np.random.default_rng(SEED)
     largest: dict[str, float] = {}
     seconds: dict[str, float] = {}
     solved, refused, unknowns, methods = 0, 0, 0, set()
-    for _, voigt in zip(range(ATTEMPTS), random_tensors(problem.sign), strict=False):
+    for voigt, exact in problems(problem.sign):
         try:
-            found = error(voigt, generator, n, problem.distortion)
+            found = error(voigt, exact, n, problem.distortion)
         except (InadmissibleMaterialError, CalibrationError):
             refused += 1
             continue
@@ -129,6 +141,27 @@ def patch(problem: Patch, n: int) -> Measurement:
     )
 
 
+def state(sign: str, n: int) -> Statement:
+    """The first tensor of one sign that the lattice can be, and its field."""
+    from solver import CalibrationError, InadmissibleMaterialError
+
+    for voigt, exact in problems(sign):
+        scene = scene_of(voigt, exact, n)
+        try:
+            points = free_particles(scene)
+        except (InadmissibleMaterialError, CalibrationError):
+            continue
+        found = exact.displacement(*points.T), exact.rotation(*points.T)
+        targets = (
+            Target("displacement", "displacement", "L", found[0], points=points, columns=U),
+            Target("rotation", "rotation", "1", found[1], points=points, needed=False),
+        )
+        # Without shear bonds rotations are nobody's unknowns.
+        return Statement(scene, targets[:1] if sign == "zero" else targets)
+    raise RuntimeError(f"no tensor with C66 - C12 {sign} was accepted")
+
+
+U = ("u1", "u2")
 QUANTITIES = {
     "displacement": "worst relative L2 error of the displacement over the tensors",
     "rotation": "worst relative L2 error of the rotation over the tensors",
@@ -163,5 +196,6 @@ CASES = (
         featured="bond/lattice C66 > C12",
         length="L",
         timed=False,
+        poses=tuple(Pose(f"bond/lattice {NAMES[s]}", partial(state, s), NAMES[s]) for s in SIGNS),
     ),
 )

@@ -8,13 +8,14 @@ together, sin²(ω Δt/2) = λ(k) Δt²/4, to rounding, with λ from the energy 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
 
 from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measurement, Method, OrderBand
 from cmverify.cases.common import bond_energies, materials, warm
+from cmverify.exchange.statement import Pose, Statement, Target
 from cmverify.judge.norms import relative_l2
 
 DENSITY = 1.0
@@ -140,24 +141,25 @@ class Lamb:
     distortion: float = 1.0
 
 
-def push(problem: Lamb, n: int) -> Measurement:
-    """A strip of pressure, Ricker's wavelet in time, n cells a shear wavelength of its peak.
-
-    The body is large enough that no wave comes back from its other sides in time.
-    """
-    from references.analytic.lamb import edge_displacement, ricker
-    from solver import ElasticTensor, Load, Scene, rectangle, waves
-
-    # c_S = 1, so that lengths are wavelengths of the peak frequency and times its periods.
+@cache
+def shear_of_one() -> Array:
+    """c_S = 1, so that lengths are wavelengths of the peak frequency and times its periods."""
     voigt = materials.isotropic(POISSON, "strain")
-    voigt = voigt / voigt[2, 2]
+    return voigt / voigt[2, 2]
+
+
+def half_plane(problem: Lamb, n: int) -> Any:
+    """So much of a half-plane that no wave comes back from its other sides in time."""
+    from references.analytic.lamb import ricker
+    from solver import ElasticTensor, Load, Scene, rectangle
+
     pulse = ricker(PULSE, DELAY)
     width, height = 13.0, 5.0
-    scene = Scene(
+    return Scene(
         region=rectangle(width, height, centre=(0.0, -0.5 * height)),
         spacing=1.0 / n,
         m=3,
-        material=ElasticTensor(problem.distortion * voigt),
+        material=ElasticTensor(problem.distortion * shear_of_one()),
         density=1.0,
         surface=problem.surface,
         loads=[
@@ -168,18 +170,49 @@ def push(problem: Lamb, n: int) -> Measurement:
             )
         ],
     )
+
+
+def into_the_body(x: float, times: Array) -> Array:
+    """Lamb's displacement of the edge at x."""
+    from references.analytic.lamb import edge_displacement, ricker
+
+    lame = (float(shear_of_one()[0, 1]), 1.0)
+    pulse = ricker(PULSE, DELAY)
+    return edge_displacement(x, times, pulse, 0.3 / PULSE, lame, 1.0, HALF_WIDTH)
+
+
+def state(n: int) -> Statement:
+    """The half-plane, and its edge's motion at both receivers."""
+    times = np.linspace(0.0, END, 121)
+    down = np.stack([into_the_body(x, times) for x in RECEIVERS], axis=1)
+    places = np.array([(x, 0.0) for x in RECEIVERS])
+    return Statement(
+        half_plane(Lamb("extrapolated"), n),
+        (Target("u2", "displacement", "p λ/µ", -down, points=places, times=times),),
+        remarks=(
+            f"At rest until t = 0. The pressure on |x1| ≤ {HALF_WIDTH:g} is Ricker's wavelet: "
+            f"p(t) = (1 − 2 s²) exp(−s²), s = π {PULSE:g} (t − {DELAY:g}).",
+            "The half-plane is x2 ≤ 0; its density and shear modulus are 1.",
+        ),
+    )
+
+
+def push(problem: Lamb, n: int) -> Measurement:
+    """A strip of pressure, Ricker's wavelet in time, n cells a shear wavelength of its peak."""
+    from solver import waves
+
+    scene = half_plane(problem, n)
     # Nearest particles to the receivers, in the first and the second row below the edge.
     places = [(x, -(row + 0.5) / n) for x in RECEIVERS for row in (0, 1)]
     run = waves.run(scene, 0.0, END, probes=places)
     down = -run.history.values[:, 1]
-    lame = (float(voigt[0, 1]), 1.0)
     times = run.history.times
     found, wanted, curves = [], [], []
     for k, x in enumerate(RECEIVERS):
         # At the edge itself, from the two rows below it.
         edge = 1.5 * down[:, 2 * k] - 0.5 * down[:, 2 * k + 1]
         at = float(run.points[run.history.particles[2 * k], 0])
-        exact = edge_displacement(at, times, pulse, 0.3 / PULSE, lame, 1.0, HALF_WIDTH)
+        exact = into_the_body(at, times)
         found.append(edge)
         wanted.append(exact)
         curves.append(Curve(f"$x = {x:g}\\,\\lambda_S$", times, edge, exact))
@@ -390,5 +423,6 @@ CASES = (
         primary="displacement",
         featured="bond/extrapolated",
         length="λ",
+        poses=(Pose("bond/extrapolated", state),),
     ),
 )

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 
 def worst(values: Iterable[float]) -> float:
@@ -55,3 +56,28 @@ def relative_l2(computed: ArrayLike, reference: ArrayLike) -> float:
     if scale == 0.0:
         raise ValueError("the reference vanishes everywhere: a relative error has no meaning")
     return float(np.linalg.norm(a - b) / scale)
+
+
+def without_rigid_motion(points: NDArray[Any], displacement: NDArray[Any]) -> NDArray[Any]:
+    """Displacements (k, 2) less their mean and their mean rotation about the points' centre."""
+    arm = points - points.mean(axis=0)
+    u = displacement - displacement.mean(axis=0)
+    spin = np.sum(arm[:, 0] * u[:, 1] - arm[:, 1] * u[:, 0]) / np.sum(arm**2)
+    rigid = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
+    return np.asarray(u - spin * rigid)
+
+
+def largest_deviation(computed: ArrayLike, reference: ArrayLike) -> float:
+    """Largest ``|a / b - 1|``, NaN if one is.
+
+    Raises
+    ------
+    ValueError
+        If the shapes differ or a reference vanishes.
+    """
+    a, b = np.asarray(computed, dtype=float), np.asarray(reference, dtype=float)
+    if a.shape != b.shape:
+        raise ValueError(f"computed {a.shape} and reference {b.shape} do not match")
+    if not np.all(b):
+        raise ValueError("a reference vanishes: a relative deviation has no meaning")
+    return worst(np.abs(a / b - 1.0).ravel())

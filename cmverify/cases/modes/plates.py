@@ -23,6 +23,7 @@ from cmverify.cases.common import warm
 from cmverify.cases.common.adapters import stopwatch
 from cmverify.cases.common.materials import isotropic, orthotropic, turned
 from cmverify.cases.modes.pairing import clusters, pair
+from cmverify.exchange.statement import LARGEST, Pose, Statement, Target
 
 if TYPE_CHECKING:
     from solver.bonds import Surface
@@ -108,12 +109,12 @@ def reference(plate: Plate) -> Reference:
     return Reference(frequencies, solid)
 
 
-def bond(plate: Plate, n: int, stiffer: float = 1.0) -> Measurement:
-    """Modes at spacing L/n, paired by shape; tests perturb the stiffness."""
-    from solver import Crack, ElasticTensor, Scene, disc, modes, rectangle
+def scene_of(plate: Plate, n: int, stiffer: float = 1.0) -> Any:
+    """The plate at spacing L/n."""
+    from solver import Crack, ElasticTensor, Scene, disc, rectangle
 
     region = rectangle(1.0, 1.0)
-    scene = Scene(
+    return Scene(
         region=region - disc(HOLE) if plate.feature == "hole" else region,
         spacing=1.0 / n,
         m=3,
@@ -122,16 +123,40 @@ def bond(plate: Plate, n: int, stiffer: float = 1.0) -> Measurement:
         cracks=[Crack(*CRACK)] if plate.feature == "crack" else [],
         density=1.0,
     )
+
+
+def judged_modes(frequencies: Array) -> int:
+    """Ten, or eleven where the tenth is one of two."""
+    return next(g[-1] + 1 for g in clusters(frequencies) if g[-1] + 1 >= JUDGED)
+
+
+def state(plate: Plate, n: int) -> Statement:
+    """The plate, and the frequencies that are judged, in ascending order."""
+    frequencies = reference(plate).frequencies
+    wanted = frequencies[: judged_modes(frequencies)]
+    return Statement(
+        scene_of(plate, n),
+        (Target("frequencies", "frequency", "rad/s", wanted, LARGEST),),
+        remarks=(
+            f"The {len(wanted)} lowest circular frequencies of the free plate, rigid motions left "
+            f"out, ascending. Ours are paired by the shapes of the modes; yours by order.",
+        ),
+    )
+
+
+def bond(plate: Plate, n: int, stiffer: float = 1.0) -> Measurement:
+    """Modes at spacing L/n, paired by shape; tests perturb the stiffness."""
+    from solver import modes
+
     known = reference(plate)
-    found = modes.solve(scene, JUDGED + 5)
+    found = modes.solve(scene_of(plate, n, stiffer), JUDGED + 5)
     seconds = {
         "setup": float(found.statistics["setup_seconds"]),
         "solve": float(found.statistics["solve_seconds"]),
     }
     with stopwatch(seconds, "pairing"):
         points = found.points
-        # Ten, or eleven where the tenth is one of two.
-        judged = next(g[-1] + 1 for g in clusters(known.frequencies) if g[-1] + 1 >= JUDGED)
+        judged = judged_modes(known.frequencies)
         expected, frequencies = known.solid.at(points)[:judged], known.frequencies[:judged]
         pairs = pair(found.frequencies, found.shapes, found.mass, frequencies, expected)
     # Of reference modes that lie nearer than 2 %: whether the computed ones have their order.
@@ -259,5 +284,9 @@ CASES = (
         primary="frequency",
         featured="bond/mild 30°",
         length="L",
+        poses=tuple(
+            Pose(f"bond/{plate.name}", partial(state, plate), plate.name)
+            for plate in sorted(PLATES, key=lambda plate: plate.name not in QUICK)
+        ),
     ),
 )

@@ -10,7 +10,7 @@ import numpy as np
 
 from cmverify.case import Array, Check, Level, Measurement, Method, OrderBand
 from cmverify.cases.common import warm
-from cmverify.judge.norms import relative_l2
+from cmverify.judge.norms import relative_l2, without_rigid_motion
 
 if TYPE_CHECKING:
     from solver import Support
@@ -98,15 +98,6 @@ def at_points(
         system = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=1)
         found.append(np.linalg.lstsq(system, values[near], rcond=None)[0][0])
     return np.array(found)
-
-
-def without_rigid_motion(points: Array, displacement: Array) -> Array:
-    """Displacements (k, 2) less their mean and their mean rotation about the points' centre."""
-    arm = points - points.mean(axis=0)
-    u = displacement - displacement.mean(axis=0)
-    spin = np.sum(arm[:, 0] * u[:, 1] - arm[:, 1] * u[:, 0]) / np.sum(arm**2)
-    rigid = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
-    return np.asarray(u - spin * rigid)
 
 
 def displacement_errors(points: Array, computed: Array, exact: Array) -> dict[str, float]:

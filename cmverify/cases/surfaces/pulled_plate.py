@@ -26,7 +26,7 @@ from cmverify.cases.common import adapters, materials
 from cmverify.cases.surfaces import bodies
 from cmverify.cases.surfaces.bodies import Treatment
 from cmverify.cases.surfaces.round import hoop_stress
-from cmverify.judge.norms import relative_l2
+from cmverify.judge.norms import relative_l2, without_rigid_motion
 
 HALF_WIDTH = 4.0
 FEM = "finite elements"
@@ -95,9 +95,7 @@ def pulled(problem: Pulled, treatment: Treatment, m: float, n: int) -> Measureme
     points, stored = solution.points, reference(problem.material)
     angle = np.radians(stored["degrees"])
     edge = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    u = bodies.without_rigid_motion(
-        edge, bodies.at_points(points, solution.displacement, edge, spacing)
-    )
+    u = without_rigid_motion(edge, bodies.at_points(points, solution.displacement, edge, spacing))
     stress = bodies.symmetric(recovery.stress(solution, rule="family"))
     # The two rows beside the section; their mean is the section's but for the curvature.
     rows = [adapters.row(points, height, spacing) for height in (-0.5 * spacing, 0.5 * spacing)]

@@ -18,6 +18,7 @@ from cmverify.case import Array, Case, Curve, Field, FieldSet, LinePlot, Measure
 from cmverify.cases.common import adapters, materials
 from cmverify.cases.surfaces import bodies
 from cmverify.cases.surfaces.bodies import Treatment
+from cmverify.exchange.statement import L2_STRAINED, Pose, Statement, Target, laid_out
 from cmverify.judge.norms import relative_l2
 
 Shape = Literal["disc", "hole"]
@@ -98,9 +99,9 @@ def _polynomial(solid: str) -> Any:
     return combine(fields, weights.tolist())
 
 
-def loaded(problem: Problem, treatment: Treatment, m: float, n: int) -> Measurement:
-    """Solve under the exact tractions and compare with the closed form everywhere."""
-    from solver import ElasticTensor, Load, Scene, recovery
+def scene_of(problem: Problem, treatment: Treatment, m: float, n: int) -> Any:
+    """The body under the exact tractions."""
+    from solver import ElasticTensor, Load, Scene
 
     def traction(x: Array, y: Array) -> Array:
         return problem.scale * problem.stress(x, y)
@@ -109,7 +110,7 @@ def loaded(problem: Problem, treatment: Treatment, m: float, n: int) -> Measurem
         return np.hypot(x, y) > 0.45
 
     at = 0.25 if problem.shape == "disc" else 0.35
-    solution = Scene(
+    return Scene(
         region=problem.region,
         spacing=1.0 / n,
         m=m,
@@ -117,7 +118,29 @@ def loaded(problem: Problem, treatment: Treatment, m: float, n: int) -> Measurem
         surface=treatment,
         supports=bodies.held((-at, 0.0), (at, 0.0), problem.displacement),
         loads=[Load.stress(traction, where=outer)],
-    ).solve(tolerance=bodies.TOLERANCE)
+    )
+
+
+def state(problem: Problem, n: int) -> Statement:
+    """The body, and what is judged of an answer: every particle."""
+    scene = scene_of(problem, "extrapolated", 5, n)
+    points = laid_out(scene).lattice.places
+    u, stress = problem.displacement(*points.T), problem.stress(*points.T)
+    of_u, of_stress = ("u1", "u2"), ("s11", "s22", "s12")
+    return Statement(
+        scene,
+        (
+            Target("displacement", "displacement", "σL/C", u, L2_STRAINED, points, columns=of_u),
+            Target("stress", "stress", "σ", stress, points=points, columns=of_stress, needed=False),
+        ),
+    )
+
+
+def loaded(problem: Problem, treatment: Treatment, m: float, n: int) -> Measurement:
+    """Solve under the exact tractions and compare with the closed form everywhere."""
+    from solver import recovery
+
+    solution = scene_of(problem, treatment, m, n).solve(tolerance=bodies.TOLERANCE)
     points = solution.points
     u = problem.displacement(*points.T)
     stress = bodies.symmetric(recovery.stress(solution, rule="family"))
@@ -259,6 +282,7 @@ def _case(shape: Shape, solid: str) -> Case:
         primary="displacement",
         featured="bond/extrapolated",
         length="L",
+        poses=(Pose("bond/extrapolated", partial(state, Problem(shape, solid))),),
     )
 
 
