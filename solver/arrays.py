@@ -6,5 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+#: Of single or double precision.
+Float = NDArray[np.floating]
 Mask = NDArray[np.bool_]
 Indices = NDArray[np.int64]

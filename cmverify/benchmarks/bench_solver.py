@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from time import process_time
 
+import numpy as np
+
 
 class CrackTip:
     """Crack tip, mode I, to 1e-8; the set-up of the preconditioner is part of it."""
@@ -45,3 +47,25 @@ class CrackTip:
 
     track_iterations.unit = "iterations"  # type: ignore[attr-defined]
     track_products_a_solve.unit = "products"  # type: ignore[attr-defined]
+
+
+class VCycle:
+    """One application of the two-level preconditioner, in single and in double precision."""
+
+    params = ([60, 120], ["float32", "float64"])
+    param_names = ("a over spacing", "precision")
+    timeout = 120.0
+
+    def setup(self, resolution: int, precision: str) -> None:
+        """Build the preconditioner of the crack tip and compile."""
+        from cmverify.studies.speed.scenes import crack_tip
+        from solver.linear import TwoLevel
+
+        operator = crack_tip(resolution).discretise().operator
+        self.inverse = TwoLevel(operator, precision=getattr(np, precision))
+        self.residual = np.random.default_rng(1).normal(size=operator.shape[0])
+        self.inverse.matvec(self.residual)
+
+    def time_v_cycle(self, resolution: int, precision: str) -> None:
+        """Seconds."""
+        self.inverse.matvec(self.residual)

@@ -11,14 +11,14 @@ of them. Some hundred products, whatever the size of the body, and the fine matr
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from ..arrays import Array, Indices
+from ..arrays import Array, Float, Indices
 from ..operators import BondOperator, kernels
 
 # Hats a node at most; a support in more pieces than this is rubble.
@@ -31,15 +31,19 @@ class _Rows:
 
     pointer: NDArray[np.uint64]
     index: NDArray[np.uint64]
-    weight: Array
+    weight: Float
 
     @classmethod
     def of(cls, matrix: sparse.csr_array) -> _Rows:
         return cls(matrix.indptr.astype(np.uint64), matrix.indices.astype(np.uint64), matrix.data)
 
+    def rounded(self, precision: type[np.floating]) -> _Rows:
+        """The same with weights of another precision."""
+        return replace(self, weight=self.weight.astype(precision))
+
     def __call__(
-        self, values: Array, rows: NDArray[np.uint64] | None = None, out: Array | None = None
-    ) -> Array:
+        self, values: Float, rows: NDArray[np.uint64] | None = None, out: Float | None = None
+    ) -> Float:
         """The matrix times each component; only some rows, into `out`, if those are given."""
         count = len(self.pointer) - 1
         rows = np.arange(count, dtype=np.uint64) if rows is None else rows
@@ -277,7 +281,7 @@ class _Probe:
         self.fine[:] = 0.0
         self.image[:] = 0.0
 
-    def __call__(self, component: int) -> Array:
+    def __call__(self, component: int) -> Float:
         """Pᵀ K P e for the sum e of the lit hats in one component."""
         hats = self.hats
         unit = np.zeros((1, hats.count))

@@ -55,9 +55,9 @@ class RotationBlock(LinearOperator):
             out,
         )
         if operator.ended_stiffness is not None:
-            turned = np.zeros((3, len(theta)))
-            turned[2] = given
-            out[0] -= operator.nodes_reaction(turned)[2]
+            turned = np.zeros((3, len(operator.at_surface)))
+            turned[2] = given[operator.at_surface]
+            out[0, operator.at_surface] -= operator.reaction(turned)[2]
         return out[0] if fixed is None else np.where(fixed, theta, out[0])
 
     def _adjoint(self) -> RotationBlock:

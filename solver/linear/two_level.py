@@ -23,10 +23,11 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, splu
 
-from ..arrays import Array
+from ..arrays import Array, Float
 from ..errors import NegativeCurvatureError
 from ..operators import BondOperator, kernels
 from .coarse import Hats
+from .smoother import Smoother, size_of
 
 # Distance of coarse nodes by unknowns a particle: with two products of smoothing the best
 # balance of set-up and iterations from 4 to 12 cells. In conduction the coarse matrix is cheap
@@ -34,9 +35,6 @@ from .coarse import Hats
 # factorisation stays small beside the products.
 _COARSENING = {1: 6, 2: 8, 3: 8}
 LARGEST_COARSE = 60_000
-# Ratio of the ends of the interval on which the polynomial is small: shorter waves than the
-# coarse grid resolves.
-_RATIO = 5.0
 # Coarse functions can be dependent in narrow bodies; their null directions carry no residual.
 _REGULARISATION = 1e-11
 
@@ -54,14 +52,15 @@ class BlockJacobi(LinearOperator):
         super().__init__(operator.dtype, operator.shape)
         self.operator = operator
         bulk = _inverse(operator, operator.bulk_blocks, None)
-        self._bulk = np.ascontiguousarray(np.moveaxis(bulk, 2, 0))
-        self._own = _inverse(operator, operator.own_blocks, operator.own)
+        #: Inverses, shapes (phases, c, c) and (c, c, d), see `kernels.block_scale`.
+        self.bulk: Array = np.ascontiguousarray(np.moveaxis(bulk, 2, 0))
+        self.own: Array = _inverse(operator, operator.own_blocks, operator.own)
 
     def _matvec(self, x: Array) -> Array:
         c = self.operator.components
         residual = np.ascontiguousarray(np.asarray(x, dtype=np.float64).reshape(c, -1))
         out = np.empty_like(residual)
-        kernels.block_scale(self.operator.segments, self._bulk, self._own, residual, out)
+        kernels.block_scale(self.operator.segments, self.bulk, self.own, residual, out)
         return out.ravel()
 
     def _adjoint(self) -> BlockJacobi:
@@ -108,6 +107,8 @@ class TwoLevel(LinearOperator):
         the coarse entries that feel it are computed again.
     coarse : csc_array, optional
         The Galerkin matrix, where it is known (from a checkpoint).
+    precision : type
+        Of the V-cycle, see `solver.linear.smoother`.
 
     Raises
     ------
@@ -123,6 +124,7 @@ class TwoLevel(LinearOperator):
         regularisation: float = _REGULARISATION,
         previous: TwoLevel | None = None,
         coarse: sparse.csc_array | None = None,
+        precision: type[np.floating] = np.float32,
     ) -> None:
         super().__init__(operator.dtype, operator.shape)
         begun = perf_counter()
@@ -146,6 +148,11 @@ class TwoLevel(LinearOperator):
         whole = self.coarse if self.ended is None else (self.coarse + self.ended).tocsc()
         self._solve = _factorise(whole, regularisation)
         self.largest = self._largest_eigenvalue()
+        self._smoother = Smoother(
+            operator, self.jacobi.bulk, self.jacobi.own, self.largest, self.degree, precision
+        )
+        self._down = self.hats.restrict.rounded(precision)
+        self._up = self.hats.prolong.rounded(precision)
         #: Wall time of the set-up, s.
         self.seconds = perf_counter() - begun
 
@@ -178,38 +185,27 @@ class TwoLevel(LinearOperator):
             vector /= size
         return max(2.0, 1.2 * size)
 
-    def _smooth(self, residual: Array) -> Array:
-        """p(D⁻¹K) D⁻¹ r with the Chebyshev polynomial p of `degree` − 1."""
-        high = self.largest
-        low = high / _RATIO
-        centre, radius = 0.5 * (high + low), 0.5 * (high - low)
-        sigma = centre / radius
-        rho = 1.0 / sigma
-        step = self.jacobi.matvec(residual) / centre
-        x = step.copy()
-        for _ in range(self.degree - 1):
-            residual = residual - self.operator.matvec(step)
-            following = 1.0 / (2.0 * sigma - rho)
-            step *= following * rho
-            step += (2.0 * following / radius) * self.jacobi.matvec(residual)
-            rho = following
-            x += step
-        return x
+    def _correction(self, residual: Float) -> Float:
+        """The coarse grid's answer to a residual, on the hats."""
+        shape = self.operator.components, self.hats.count
+        forces = self._down(residual, out=np.empty(shape, dtype=residual.dtype))
+        found = self._smoother.unit * self._solve(forces.astype(np.float64).ravel())
+        found[np.abs(found) < kernels.NEGLIGIBLE * np.abs(found).max()] = 0.0
+        return found.reshape(shape).astype(residual.dtype)
 
     def _matvec(self, residual: Array) -> Array:
-        residual = np.asarray(residual, dtype=np.float64).ravel()
-        c = self.operator.components
-        x = self._smooth(residual)
-        left = (residual - self.operator.matvec(x)).reshape(c, -1)
-        if self.operator.identity_rows is not None:
-            left[self.operator.identity_rows] = 0.0
-        coarse = self._solve(self.hats.restrict(left).ravel())
-        correction = self.hats.prolong(coarse.reshape(c, -1))
-        if self.operator.identity_rows is not None:
-            correction[self.operator.identity_rows] = 0.0
-        x += correction.ravel()
-        x += self._smooth(residual - self.operator.matvec(x))
-        return x
+        given = np.ascontiguousarray(residual, dtype=np.float64)
+        given = given.reshape(self.operator.components, -1)
+        unit = size_of(given)
+        if not unit:
+            return np.zeros(given.size)
+        smoother = self._smoother
+        smoother.start(given, unit)
+        smoother.sweep()
+        self._up(self._correction(smoother.leave()), out=smoother.step)
+        smoother.correct()
+        smoother.sweep()
+        return smoother.answer(given, unit)
 
     def _adjoint(self) -> TwoLevel:
         return self

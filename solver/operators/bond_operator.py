@@ -57,8 +57,10 @@ class BondOperator(LinearOperator):
         partly = prescribed[:, self.active]
         #: Identity rows, shape (components, active), or None if there are none.
         self.identity_rows: Mask | None = partly if partly.any() else None
-        self._grid = np.zeros((self.components, int(np.prod(bonds.lattice.shape))))
-        self._kernel = {
+        #: The last field on the padded grid.
+        self.grid = np.zeros((self.components, int(np.prod(bonds.lattice.shape))))
+        #: Of products, see `solver.operators.kernels`.
+        self.kernel = {
             3: kernels.elastic_product,
             2: kernels.central_product,
             1: kernels.conductive_product,
@@ -101,14 +103,12 @@ class BondOperator(LinearOperator):
         """Add values of the surface's particles, (components, p), to a field of the active ones."""
         out[:, self.at_surface] += values[:, self._on_surface]
 
-    def nodes_reaction(self, values: Array) -> Array:
-        """What the surface's nodes do to the active particles, both (components, active)."""
+    def reaction(self, values: Array) -> Array:
+        """What the surface's nodes do to the particles `at_surface`, both (components, those)."""
         assert self.ended_stiffness is not None
         given = np.zeros((self.components, len(self.ended_stiffness.particles)))
-        given[:, self._on_surface] = values[:, self.at_surface]
-        out = np.zeros_like(values)
-        self.add_at_surface(out, self.ended_stiffness.reaction(given))
-        return out
+        given[:, self._on_surface] = values
+        return self.ended_stiffness.reaction(given)[:, self._on_surface]
 
     def _layout(self) -> tuple[NDArray[np.uint64], Array]:
         """Segments of the active particles and the diagonal blocks that differ from the bulk's."""
@@ -156,10 +156,10 @@ class BondOperator(LinearOperator):
             values if self.identity_rows is None else np.where(self.identity_rows, 0.0, values)
         )
         # Only cells of active particles are ever written: the others stay zero.
-        kernels.scatter(segments, masked_values, self._grid)
-        out = self.apply_grid(self._grid, segments, out)
+        kernels.scatter(segments, masked_values, self.grid)
+        out = self.apply_grid(self.grid, segments, out)
         if self.ended_stiffness is not None and segments is self.segments:
-            out += self.nodes_reaction(masked_values)
+            out[:, self.at_surface] += self.reaction(masked_values[:, self.at_surface])
         if self.identity_rows is not None:
             out[self.identity_rows] = (
                 0.0 if masked else self.identity_scale * values[self.identity_rows]
@@ -168,7 +168,7 @@ class BondOperator(LinearOperator):
 
     def clear(self) -> None:
         """Forget the last field: needed before products on a part of the body."""
-        self._grid.fill(0.0)
+        self.grid.fill(0.0)
 
     def windows(self, boxes: NDArray[np.int64]) -> NDArray[np.uint64]:
         """The parts of the segments within disjoint boxes of the padded grid.
@@ -186,7 +186,7 @@ class BondOperator(LinearOperator):
         """Rows of the active particles for a field on the padded grid, (components, active)."""
         if out is None:
             out = np.empty((self.components, len(self.active)))
-        self._kernel(
+        self.kernel(
             grid,
             self.segments if segments is None else segments,
             self.steps,
@@ -206,7 +206,7 @@ class BondOperator(LinearOperator):
 
     def coupling(self, prescribed: Array) -> Array:
         """K_fp u_p: rows of the active particles for prescribed values of shape (components, N)."""
-        grid = np.zeros_like(self._grid)
+        grid = np.zeros_like(self.grid)
         rows, columns = self.bonds.lattice.rows_columns
         # Parts set aside hold NaN and no bonds.
         grid[:, rows * self.bonds.lattice.shape[1] + columns] = np.nan_to_num(prescribed)

@@ -41,6 +41,8 @@ setattr(nb.config, "THREADING_LAYER_PRIORITY", ["omp", "tbb", "workqueue"])  # n
 _U = np.uint64
 # Contraction to fused multiply-adds only: sums keep their order.
 _FAST = {"contract", "nsz"}
+#: What counts as zero beside values of size one in single precision.
+NEGLIGIBLE = 1e-30
 _OPTIONS: Any = {"parallel": True, "fastmath": _FAST, "nogil": True}
 
 
@@ -230,6 +232,67 @@ def block_scale(segments, bulk, own, residual, out):
                     entries = own[a, b]
                     for j in range(size):
                         target[first + j] += entries[column + j] * source[first + j]
+
+
+@kernel(**_OPTIONS)
+def narrow(segments, values, unit, out):
+    """Packed values (c, n) over a unit in the precision of `out`, negligible ones as zero."""
+    for s in nb.prange(segments.shape[0]):
+        size, first = segments[s, 1], segments[s, 2]
+        for c in range(out.shape[0]):
+            given, taken = values[c], out[c]
+            for j in range(size):
+                value = given[first + j] / unit
+                taken[first + j] = value if abs(value) > NEGLIGIBLE else 0.0
+
+
+@kernel(**_OPTIONS)
+def relax(segments, bulk, own, keep, gain, rows, residual, step, x, grid):
+    """A step of a smoother with the inverses D⁻¹ of the diagonal blocks.
+
+    The residual loses the rows of the last step, the next is keep·step + gain·D⁻¹·residual; it
+    is added to x and shown on the grid.
+
+    Parameters
+    ----------
+    segments : uint64 (s, 7)
+    bulk : float (phases, c, c)
+    own : float (c, c, d)
+    keep, gain : float
+    rows, residual, step, x : float (c, n)
+    grid : float (c, cells)
+    """
+    size_c = residual.shape[0]
+    for s in nb.prange(segments.shape[0]):
+        cell, size, first = segments[s, 0], segments[s, 1], segments[s, 2]
+        kind, column, phase = segments[s, 3], segments[s, 4], segments[s, 6]
+        for a in range(size_c):
+            left, lost = residual[a], rows[a]
+            for j in range(size):
+                left[first + j] -= lost[first + j]
+        for a in range(size_c):
+            next_, total, shown = step[a], x[a], grid[a]
+            if keep == 0.0:
+                # Whatever is left of an earlier use.
+                for j in range(size):
+                    next_[first + j] = 0.0
+            else:
+                for j in range(size):
+                    next_[first + j] *= keep
+            for b in range(size_c):
+                left = residual[b]
+                if kind == _U(0):
+                    entry = gain * bulk[phase, a, b]
+                    for j in range(size):
+                        next_[first + j] += entry * left[first + j]
+                else:
+                    entries = own[a, b]
+                    for j in range(size):
+                        next_[first + j] += gain * entries[column + j] * left[first + j]
+            for j in range(size):
+                value = next_[first + j]
+                total[first + j] += value
+                shown[cell + j] = value
 
 
 @kernel(**_OPTIONS)

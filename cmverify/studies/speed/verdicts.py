@@ -45,6 +45,16 @@ def of_solvers(rows: list[Timing]) -> list[Verdict]:
     ]
 
 
+def of_preconditioner(rows: list[Timing]) -> list[Verdict]:
+    """Single precision costs no iteration, and double precision time."""
+    single, double = (row.values for row in rows)
+    most = double["iterations to 1e-12"]
+    return [
+        _at_most("V-cycle: iterations in single precision", single["iterations to 1e-12"], most),
+        _at_least("V-cycle: CPU seconds in double ÷ single precision", double["slower"], 1.15),
+    ]
+
+
 def of_modes(rows: list[Timing]) -> list[Verdict]:
     """1/30 of the CPU seconds of SciPy's shift and invert, and no mode missed or unconverged."""
     ours = rows[0].values

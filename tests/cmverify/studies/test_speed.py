@@ -40,6 +40,15 @@ def test_surfaces_cost_few_iterations_and_nothing_where_there_are_none() -> None
     assert by_name["plate with a hole: extrapolated"]["bytes ÷ none"] > 2
 
 
+def test_single_precision_costs_no_iterations() -> None:
+    rows = measure.preconditioner(30, 1)
+    assert verdicts.of_preconditioner(rows)[0].passed
+    single, double = (Timing(row.name, dict(row.values)) for row in rows)
+    single.values["iterations to 1e-12"] += 1
+    double.values["slower"] = 1.1
+    assert not any(v.passed for v in verdicts.of_preconditioner([single, double]))
+
+
 def test_growth_reports_flat_iterations_and_a_falling_error() -> None:
     rows = measure.growth((30, 60))
     assert all(row.values["iterations"] <= 12 for row in rows)

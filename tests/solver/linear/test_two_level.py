@@ -8,7 +8,7 @@ import pytest
 from references.analytic import lekhnitskii
 from solver import ConductivityTensor, Crack, ElasticTensor, Scene, Support, disc
 from solver.analyses.statics import solve
-from solver.linear import BlockJacobi, TwoLevel
+from solver.linear import BlockJacobi, Task, TwoLevel, method
 from solver.operators.assembled import to_csr
 
 VOIGT = np.array([[1, 0.2, 0.1], [0.2, 0.8, 1 / 6], [0.1, 1 / 6, 1 / 3]])
@@ -48,7 +48,7 @@ def test_symmetric_positive_and_within_the_smoother_s_bound(partly: bool) -> Non
     )  # fmt: skip
     operator = scene.discretise().operator
     size = operator.shape[0]
-    m = _dense(TwoLevel(operator, coarsening=4), size)
+    m = _dense(TwoLevel(operator, coarsening=4, precision=np.float64), size)
     assert np.abs(m - m.T).max() <= 1e-10 * np.abs(m).max()
     stiffness = to_csr(operator).toarray()
     spectrum = np.linalg.eigvals(m @ stiffness)
@@ -59,6 +59,20 @@ def test_symmetric_positive_and_within_the_smoother_s_bound(partly: bool) -> Non
     # The rigorous bound on which the smoother rests.
     jacobi = _dense(BlockJacobi(operator), size)
     assert np.linalg.eigvals(jacobi @ stiffness).real.max() <= 2.0 + 1e-10
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e12])
+def test_single_precision_costs_no_iterations_down_to_1e_12(unit: float) -> None:
+    scene = dataclasses.replace(_crack_tip(60), material=ElasticTensor(unit * VOIGT))
+    problem = scene.discretise()
+    rhs, counts = problem.right_hand_side(), []
+    for precision in (np.float32, np.float64):
+        inverse = TwoLevel(problem.operator, precision=precision)
+        task = Task(rhs, np.zeros_like(rhs), 1e-12, 100)
+        found, count = method.iterate(problem.operator, "positive", inverse, task)
+        assert method.relative_residual(problem.operator, found, rhs) <= 1e-12
+        counts.append(count)
+    assert counts[0] <= counts[1]
 
 
 def test_iterations_stay_flat_on_the_crack_tip() -> None:

@@ -60,11 +60,17 @@ COLD = [Support.where(lambda x, y: x < -0.35, temperature=0.0)]
 
 @dataclass(frozen=True)
 class Line:
-    """An operator, whether it is positive definite, and whether rigid motions are free."""
+    """An operator, whether it is positive definite, whether rigid motions are free, roundings."""
 
     make: Callable[[], LinearOperator]
     positive: bool = True
     free: bool = False
+    roundings: float = 1e-10
+
+
+def two_levels(operator: BondOperator) -> LinearOperator:
+    """The V-cycle without the roundings of single precision."""
+    return TwoLevel(operator, precision=np.float64)
 
 
 TABLE = {
@@ -83,7 +89,7 @@ TABLE = {
     "polar, free": Line(lambda: bonds(POLAR), False, True),
     "polar, ended bonds, free": Line(lambda: bonds(POLAR, surface="extrapolated"), False, True),
     "polar, clamped, ended bonds": Line(lambda: bonds(POLAR, CLAMPED, surface="extrapolated")),
-    "polar, two levels": Line(lambda: TwoLevel(bonds(POLAR, CLAMPED, surface="extrapolated"))),
+    "polar, two levels": Line(lambda: two_levels(bonds(POLAR, CLAMPED, surface="extrapolated"))),
     "elastic, clamped": Line(lambda: bonds(ISOTROPIC, CLAMPED)),
     "elastic, on rollers": Line(lambda: bonds(ISOTROPIC, ROLLER)),
     "elastic, ended bonds": Line(lambda: bonds(ISOTROPIC, CLAMPED, surface="extrapolated")),
@@ -99,9 +105,12 @@ TABLE = {
     "rotations of negative stiffness": Line(lambda: RotationBlock(bonds(INDEFINITE, CLAMPED))),
     "condensed displacements": Line(lambda: Condensed(bonds(INDEFINITE, CLAMPED))),
     "block Jacobi": Line(lambda: BlockJacobi(bonds(ISOTROPIC, CLAMPED))),
-    "two levels": Line(lambda: TwoLevel(bonds(ISOTROPIC, CLAMPED))),
+    "two levels": Line(lambda: two_levels(bonds(ISOTROPIC, CLAMPED))),
+    "two levels, single precision": Line(
+        lambda: TwoLevel(bonds(ISOTROPIC, CLAMPED)), roundings=1e-6
+    ),
     "two levels, ended bonds": Line(
-        lambda: TwoLevel(bonds(ISOTROPIC, CLAMPED, surface="extrapolated"))
+        lambda: two_levels(bonds(ISOTROPIC, CLAMPED, surface="extrapolated"))
     ),
 }
 every = pytest.mark.parametrize("line", TABLE.values(), ids=TABLE)
@@ -118,11 +127,13 @@ def test_operator(line):
     matrix = dense(operator)
     size = np.abs(matrix).max()
     # Symmetric: the adjoint is the operator.
-    np.testing.assert_allclose(matrix, matrix.T, atol=1e-10 * size)
+    np.testing.assert_allclose(matrix, matrix.T, atol=line.roundings * size)
     x, y = np.random.default_rng(1).normal(size=(2, operator.shape[0]))
-    assert x @ operator.matvec(y) == pytest.approx(y @ operator.rmatvec(x), rel=1e-9)
+    assert x @ operator.matvec(y) == pytest.approx(y @ operator.rmatvec(x), rel=10 * line.roundings)
     # Linear, and the same twice.
-    np.testing.assert_allclose(operator.matvec(2 * x - y), matrix @ (2 * x - y), atol=1e-9 * size)
+    np.testing.assert_allclose(
+        operator.matvec(2 * x - y), matrix @ (2 * x - y), atol=10 * line.roundings * size
+    )
     np.testing.assert_array_equal(operator.matvec(x), operator.matvec(x))
     lowest = np.linalg.eigvalsh(0.5 * (matrix + matrix.T))[0]
     if line.positive:
