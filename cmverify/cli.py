@@ -112,7 +112,7 @@ def _run(  # type: ignore[no-untyped-def]
 
     from rich.console import Console
 
-    from cmverify.report import summary, terminal
+    from cmverify.report import previous, summary, terminal
     from cmverify.run import environment, runner
     from cmverify.run.progress import LiveProgress
     from cmverify.run.threads import available_cores, threads_per_worker
@@ -121,6 +121,7 @@ def _run(  # type: ignore[no-untyped-def]
     console = Console()
     started, clock = datetime.datetime.now().astimezone(), time.perf_counter()
     plan = runner.plan(cases, level)
+    earlier = _earlier(out)
     info = summary.RunInfo(
         level=str(level),
         jobs=jobs,
@@ -132,10 +133,14 @@ def _run(  # type: ignore[no-untyped-def]
         measured=[list(task) for task in plan],
         finished=False,
     )
+    if earlier is not None:
+        info = info.keeping(earlier)
     go_on = f"go on with: {info.command} --resume"
     try:
         # Before anything is measured: what a killed run has finished can be reported.
         summary.save_info(info, out)
+        if not resume:
+            previous.set_aside(out)
         with LiveProgress(console, len(plan)) as live:
             records = runner.run(
                 cases, level, out, jobs=jobs, resume=resume, timeout=timeout, listen=live.listen
@@ -147,9 +152,9 @@ def _run(  # type: ignore[no-untyped-def]
         _interrupted(f"{done} of {len(plan)} measurements are finished and kept; {go_on}")
     except OSError as error:
         _interrupted(f"{error.strerror or error}; what is finished is kept; {go_on}")
-    judged = summary.summarise(cases, records)
+    judged = summary.summarise(cases, records, info)
     terminal.print_verdicts(console, judged)
-    _write(judged, info, out, json, console)
+    _write(_beside(judged, info, out, console), info, out, json, console)
     raise typer.Exit(0 if summary.all_passed(judged) else 1)
 
 
@@ -157,20 +162,31 @@ def _run(  # type: ignore[no-untyped-def]
 def report(
     out: Folder = Path("report"),
     json: Annotated[Path | None, typer.Option(help="Write all numbers to this file.")] = None,
+    schema: Annotated[
+        bool, typer.Option("--schema", help="Print the JSON schema of results.json, and stop.")
+    ] = False,
 ) -> None:
     """Render the report of a finished run again."""
+    if schema:
+        from json import dumps
+
+        from cmverify.report import numbers
+
+        typer.echo(dumps(numbers.schema(), indent=1))
+        raise typer.Exit(0)
     from rich.console import Console
 
     from cmverify.report import summary, terminal
     from cmverify.run import folder
 
     judged, info = _finished(out)
+    console = Console()
+    judged = _beside(judged, info, out, console)
     try:
         folder.check_file(out / "results.json")
         folder.check_file(json or out / "results.json")
     except folder.FolderError as error:
         _refuse(str(error))
-    console = Console()
     terminal.print_missing(console, judged)
     _write(judged, info, out, json, console)
     raise typer.Exit(0 if summary.all_passed(judged) else 1)
@@ -352,9 +368,42 @@ def _finished(out: Path):  # type: ignore[no-untyped-def]
                     f"the run in {out} measured {case} with {method}, which this version does not "
                     f"know: run it anew"
                 )
-        return summary.summarise(cases, summary.complete(info, out)), info
+        return summary.summarise(cases, summary.complete(info, out), info), info
     except ValueError as error:
         _refuse(str(error))
+
+
+def _earlier(out: Path):  # type: ignore[no-untyped-def]
+    """Info of the run that a folder holds already, or None."""
+    from cmverify.report import summary
+
+    try:
+        return summary.load_info(out)
+    except ValueError:
+        return None
+
+
+def _beside(own, info, out: Path, console):  # type: ignore[no-untyped-def]
+    """A run's results with those that its folder keeps of earlier ones; says how they stand."""
+    from cmverify.cases import registry
+    from cmverify.report import summary
+    from cmverify.report.wording import counted
+
+    cases = registry.all_cases()
+    if lost := summary.forgotten(cases, info):
+        console.print(
+            f"Not known any more, and left out: {', '.join(lost)}", markup=False, soft_wrap=True
+        )
+    judged = summary.beside(cases, own, info, out)
+    kept = len(judged) - len(own)
+    if kept:
+        bad = [r.case.name for r in judged if r.run is not info and not r.passed]
+        state = f"of which fail: {', '.join(bad)}" if bad else "all of which hold"
+        said = counted(kept, "case is", "cases are")
+        console.print(
+            f"{said} kept from earlier runs in {out}, {state}.", markup=False, soft_wrap=True
+        )
+    return judged
 
 
 def _write(judged, info, out: Path, json: Path | None, console) -> None:  # type: ignore[no-untyped-def]

@@ -2,23 +2,34 @@
 
 from __future__ import annotations
 
-import math
 import multiprocessing
 import os
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from cmverify.case import Case, LinePlot, Measurement, nothing_to_compile
 from cmverify.judge import precision
+from cmverify.report import opening, pages, previous
+from cmverify.report.numbers import Results
 from cmverify.report.picture import Picture
-from cmverify.report.summary import CaseResult, Row, RunInfo, all_passed, table
+from cmverify.report.summary import CaseResult, Row, RunInfo, as_json, table, tally
+from cmverify.report.tables import blocks
+from cmverify.report.topics import by_topic
+from cmverify.report.wording import heading, mathtext
 from cmverify.run.lifeline import hold
 from cmverify.run.results import write_text
 from cmverify.run.threads import child_environment
+
+#: Pages that other commands write beside this one, and what they hold.
+BESIDE = (
+    ("stability.html", "Stability of bond models: verdicts, maps, polar plots"),
+    ("speed.html", "Speed beside what one would otherwise use"),
+    ("faults.html", "Faults put in on purpose: which case catches which"),
+    ("errata.html", "The paper, audited: every equation and number"),
+)
 
 
 def build(summary: Sequence[CaseResult], info: RunInfo, folder: Path) -> Path:
@@ -28,34 +39,52 @@ def build(summary: Sequence[CaseResult], info: RunInfo, folder: Path) -> Path:
     -------
     Path of index.html
     """
-    from jinja2 import Environment, StrictUndefined
-
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
-    environment.filters.update(number=number, seconds=seconds, count=count, mathtext=mathtext)
-    resources = files("cmverify.report")
-    template = environment.from_string((resources / "template.html").read_text(encoding="utf-8"))
-    page = template.render(
-        css=(resources / "style.css").read_text(encoding="utf-8"),
-        info=info,
-        passed=all_passed(summary),
-        missing=[task for result in summary for task in result.missing],
-        verdicts=[v for result in summary for v in result.verdicts],
-        sections=_sections(summary, folder, info.jobs),
-        stability=(folder / "stability.html").is_file(),
-        faults=(folder / "faults.html").is_file(),
+    drawn = _drawn(summary, folder, info.jobs)
+    pictures = {r.case.name: parts[0] for r, parts in zip(summary, drawn, strict=True)}
+    sections = {
+        result.case.name: _section(result, info, *parts)
+        for result, parts in zip(summary, drawn, strict=True)
+    }
+    page = (
+        pages.environment()
+        .get_template("template.html")
+        .render(
+            css=pages.css(),
+            info=info,
+            counts=tally(summary),
+            missing=[task for result in summary for task in result.missing],
+            failed=[v for r in summary for v in r.verdicts if not v.passed],
+            topics=[
+                (topic, [sections[result.case.name] for result in own])
+                for topic, own in by_topic(summary)
+            ],
+            lines=opening.lines(summary),
+            pictures=opening.pictures(summary, pictures),
+            methods=sorted({name for r in summary for name in r.outcomes}),
+            before=_before(summary, info, folder),
+            beside=[(name, text) for name, text in BESIDE if (folder / name).is_file()],
+        )
     )
     path = folder / "index.html"
     write_text(path, page)
     return path
 
 
-def _sections(summary: Sequence[CaseResult], folder: Path, jobs: int) -> list[dict[str, Any]]:
-    """One section a case; figures are drawn in `jobs` processes if that pays."""
+def _before(summary: Sequence[CaseResult], info: RunInfo, folder: Path) -> Any:
+    """The run before beside this one: a comparison, why there is none, or None."""
+    try:
+        return previous.compare(folder, Results.model_validate_json(as_json(summary, info)))
+    except ValueError as error:
+        return str(error)
+
+
+def _drawn(
+    summary: Sequence[CaseResult], folder: Path, jobs: int
+) -> list[tuple[list[Picture], list[str]]]:
+    """Figures and exported fields of each case, in `jobs` processes if that pays."""
     if min(jobs, len(summary)) < 2:
-        drawn = [_draw(result, folder) for result in summary]
-    else:
-        drawn = _draw_in_processes(summary, folder, min(jobs, len(summary)))
-    return [_section(result, *parts) for result, parts in zip(summary, drawn, strict=True)]
+        return [_draw(result, folder) for result in summary]
+    return _draw_in_processes(summary, folder, min(jobs, len(summary)))
 
 
 def _draw_in_processes(
@@ -96,28 +125,31 @@ def _draw(result: CaseResult, folder: Path) -> tuple[list[Picture], list[str]]:
     return pictures, _export(result, folder)
 
 
-def _section(result: CaseResult, pictures: list[Picture], downloads: list[str]) -> dict[str, Any]:
+def _section(
+    result: CaseResult, info: RunInfo, pictures: list[Picture], downloads: list[str]
+) -> dict[str, Any]:
     """Everything the template needs to know about one case."""
     case = result.case
     rows = table(result)
     quantities = [q for q in case.quantities if any(q in row.quantities for row in rows)]
     points = precision.points(case, result.outcomes)
-    level_command = f"cmverify run {case.name} --level {{level}} --jobs {{jobs}} --out report"
+    run = result.run or info
     return {
         "case": case,
         "result": result,
         "rows": rows,
+        "blocks": blocks(rows, quantities),
         "quantities": quantities,
         "pictures": pictures,
         "comparison": _comparison(result, points),
         "downloads": downloads,
-        "checks": sorted(result.verdicts, key=lambda v: v.passed),
+        "verdicts": sorted(result.verdicts, key=lambda v: v.passed),
         "tightest": result.tightest,
-        "command": level_command,
+        "command": f"cmverify run {case.name} --level {run.level} --jobs {run.jobs} --out report",
+        "earlier": run if run.started != info.started else None,
         "solvers": _solvers(rows),
         "warnings": _warnings(rows, case.length),
         "ordered": any(row.orders for row in rows),
-        "timed": any(not math.isnan(row.total) and row.total > 0 for row in rows),
     }
 
 
@@ -154,7 +186,7 @@ def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture
                 "convergence",
                 "svg",
                 figures.convergence_plot(case, curves, case.length),
-                f"{_capital(quantity)} over spacing or element size.",
+                f"{heading(quantity)} over spacing or element size.",
                 _spoken(curves, "error"),
             )
         )
@@ -193,7 +225,7 @@ def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture
         pictures.append(Picture.drawn("stages", "png", figure, caption, alt, wide=True))
     for index, (line, series) in enumerate(figures.lines_of(featured), 1):
         title = mathtext(line.title)
-        caption = f"{title}. {_capital(where)}."
+        caption = f"{title}. {heading(where)}."
         if line.over_methods:
             caption = f"{title}. Every method at its finest spacing."
         elif line.over_resolutions:
@@ -257,41 +289,3 @@ def _spoken(points: Sequence[precision.Point], what: str) -> str:
         after = f" in {p.seconds:.2g} s" if what == "seconds" else ""
         parts.append(f"{p.method} at 1/{p.resolution}: {p.error:.1e}{after}")
     return "; ".join(parts) + "."
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
-
-
-def number(value: float | None, digits: int = 2) -> str:
-    """A figure with few digits: 0.00123 as "1.2e-3", counts as they are."""
-    if value is None or not math.isfinite(value):
-        return "n/a"
-    if value == 0:
-        return "0"
-    if value == int(value) and 1 <= abs(value) < 1e9:
-        return f"{int(value):,}".replace(",", "\u202f")
-    if 0.1 <= abs(value) < 1000:
-        return f"{value:.{digits + 1}g}"
-    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
-    return f"{mantissa}e{int(exponent)}"
-
-
-def count(value: int | None) -> str:
-    """A whole number in groups of three."""
-    return "–" if value is None else f"{value:,}".replace(",", "\u202f")
-
-
-def seconds(value: float | None) -> str:
-    """Seconds to a sensible digit."""
-    if value is None or math.isnan(value):
-        return "–"
-    return f"{value:.3f}" if value < 1 else f"{value:.2f}" if value < 100 else f"{value:.0f}"
-
-
-def mathtext(label: str) -> str:
-    """Plain Unicode for the little mathtext that labels use."""
-    text = label.replace("$", "").replace("\\sigma", "σ").replace("{", "").replace("}", "")
-    for index, sub in (("_11", "₁₁"), ("_22", "₂₂"), ("_12", "₁₂"), ("_1", "₁"), ("_2", "₂")):
-        text = text.replace(index, sub)
-    return text

@@ -20,6 +20,7 @@ from cmverify.case import Case, Field, FieldSet, LinePlot, Measurement
 from cmverify.judge.convergence import fitted_order
 from cmverify.judge.precision import Point
 from cmverify.report import style
+from cmverify.report.wording import tidy
 
 ROUNDING = 1e-12
 NARROW = (5.4, 3.9)
@@ -153,7 +154,8 @@ def convergence_plot(case: Case, points: Iterable[Point], length: str = "a") -> 
             fit = fitted_order(h, e, ROUNDING) if len(h) > 1 else None
             exact = bool(np.all(e <= ROUNDING * 10))
             note = "rounding" if exact else (f"{fit.order:.2f}" if fit else "")
-            axis.loglog(h, np.maximum(e, 1e-17), label=f"{name}, {note}", **look)
+            label = f"{name} ({note})" if note else name
+            axis.loglog(h, np.maximum(e, 1e-17), label=label, **look)
             for check in case.checks:
                 if check.method == name and check.quantity == case.primary and check.at_most:
                     _bounds(axis, [p.resolution for p in series], check.bound_at, look["color"])
@@ -211,21 +213,31 @@ def _legend_below(axis: Axes) -> None:
 
 
 def _decades(axis: Axis, unit: str = "") -> None:
-    """Log ticks as plain text: 1e-3 reads like the tables and renders quickly."""
+    """Log ticks as plain text: 1e-3 reads like the tables and renders quickly.
+
+    Decades where two or more are in view, else what lies between them too.
+    """
     low, high = axis.get_view_interval()
-    span = np.log10(high / low)
-    axis.set_major_locator(LogLocator(numticks=9))
-    if span < 1.4:  # hardly a decade: label halves as well
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    locators = (LogLocator(subs=subs, numticks=9) for subs in _SUBS)
+    for locator in (*locators, MaxNLocator(4, min_n_ticks=2)):
+        ticks = np.asarray(locator.tick_values(low, high))
+        if np.sum((ticks >= low) & (ticks <= high)) >= (3 if high > 4.0 * low else 2):
+            break
+    axis.set_major_locator(locator)
     axis.set_major_formatter(FuncFormatter(lambda v, _: _log_label(v, unit)))
     axis.set_minor_formatter(NullFormatter())
+
+
+#: What is labelled of a decade, in the order in which it is tried.
+_SUBS = ((1.0,), (1.0, 3.0), (1.0, 2.0, 5.0), tuple(float(k) for k in range(1, 10)))
 
 
 def _log_label(value: float, unit: str) -> str:
     if unit and 1e-3 <= value < 1e4:
         return f"{value:g}"
-    mantissa, exponent = f"{value:.0e}".split("e")
-    return f"{mantissa}e{int(exponent)}"
+    exact = (d for d in range(3) if abs(float(f"{value:.{d}e}") / value - 1.0) < 1e-3)
+    digits = next(exact, 3)
+    return tidy(f"{value:.{digits}e}")
 
 
 def _by_method(points: Iterable[Point]) -> list[tuple[str, list[Point]]]:

@@ -30,11 +30,20 @@ class Picture:
     def drawn(
         cls, name: str, kind: Kind, figure: Figure, caption: str, alt: str, wide: bool = False
     ) -> Picture:
-        """A matplotlib figure, the same bytes for the same figure."""
+        """A matplotlib figure, the same bytes for the same figure.
+
+        Text of an SVG stays text, a third of the size of outlines; maps have 256 colours.
+        """
+        import matplotlib
+
+        from cmverify.report import style
+
         buffer = io.BytesIO()
         options: dict[str, Any] = {"dpi": 130} if kind == "png" else {"metadata": {"Date": None}}
-        figure.savefig(buffer, format=kind, **options)
-        return cls(name, kind, buffer.getvalue(), caption, alt, wide)
+        with matplotlib.rc_context(style.RC):
+            figure.savefig(buffer, format=kind, **options)
+        content = _few_colours(buffer) if kind == "png" else _spare_font(buffer.getvalue())
+        return cls(name, kind, content, caption, alt, wide)
 
     @property
     def uri(self) -> str:
@@ -47,3 +56,20 @@ class Picture:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(self.content)
         return path
+
+
+def _few_colours(buffer: io.BytesIO) -> bytes:
+    """A PNG with a palette: half the size, and no eye tells it from the other."""
+    from PIL import Image
+
+    packed = io.BytesIO()
+    with Image.open(buffer) as image:
+        image.convert("RGB").quantize(
+            256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE
+        ).save(packed, "PNG")
+    return packed.getvalue()
+
+
+def _spare_font(content: bytes) -> bytes:
+    """Verdana, which is as wide, where whoever shows the figure has no DejaVu."""
+    return content.replace(b"'DejaVu Sans'", b"'DejaVu Sans', Verdana, sans-serif")

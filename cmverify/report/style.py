@@ -43,7 +43,7 @@ RC: Any = {
     "lines.linewidth": 1.5,
     "lines.markersize": 5.5,
     "figure.facecolor": "white",
-    "svg.fonttype": "path",
+    "svg.fonttype": "none",
     "svg.hashsalt": "cmverify",
     "figure.subplot.left": 0.135,
     "figure.subplot.right": 0.975,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +13,14 @@ from cmverify.case import Case, Check, Failed, Measurement, Outcome
 from cmverify.judge import precision
 from cmverify.judge.convergence import observed_orders
 from cmverify.judge.verdict import Verdict, judge, unjudged
+from cmverify.report import numbers
+from cmverify.report.wording import counted
 from cmverify.run import results
 
 #: Kind of failure of what was not measured, or whose record is gone.
 MISSING = "NotMeasured"
+#: Kinds of verdicts that are no checks and only ever fail.
+INCIDENTS = ("ran", "silent")
 
 
 @dataclass(frozen=True)
@@ -24,7 +28,8 @@ class RunInfo:
     """How a run was made, so that it can be made again.
 
     `measured` lists its (case, method, resolution), planned ones included: its folder may hold
-    records of others. `finished` is false until all of them were measured.
+    records of others. `finished` is false until all of them were measured. `kept` are earlier runs
+    in the same folder with the cases that this one did not measure again.
     """
 
     level: str
@@ -36,16 +41,35 @@ class RunInfo:
     environment: dict[str, Any] = field(default_factory=dict)
     measured: list[list[Any]] = field(default_factory=list)
     finished: bool = True
+    kept: list[dict[str, Any]] = field(default_factory=list)
+
+    @property
+    def everything(self) -> Iterator[RunInfo]:
+        """This run and those that are kept beside it, without what they keep themselves."""
+        yield replace(self, kept=[])
+        for earlier in self.kept:
+            yield RunInfo(**earlier)
+
+    def keeping(self, earlier: RunInfo) -> RunInfo:
+        """This run beside the cases of an earlier one in its folder that it does not measure."""
+        anew = {case for case, _, _ in self.measured}
+        kept = []
+        for run in earlier.everything:
+            rest = [task for task in run.measured if task[0] not in anew]
+            if rest:
+                kept.append(asdict(replace(run, measured=rest)))
+        return replace(self, kept=kept)
 
 
 @dataclass(frozen=True)
 class CaseResult:
-    """A case with its records and verdicts."""
+    """A case with its records and verdicts; `run` is the one that measured it, if known."""
 
     case: Case
     records: tuple[results.Record, ...]
     verdicts: tuple[Verdict, ...]
     unjudged: tuple[Check, ...]
+    run: RunInfo | None = None
 
     @property
     def outcomes(self) -> dict[str, dict[int, Outcome]]:
@@ -64,6 +88,23 @@ class CaseResult:
             f"{r.case} {r.method} {self.case.length}/{r.resolution}"
             for r in self.records
             if isinstance(r.outcome, Failed) and r.outcome.error == MISSING
+        ]
+
+    @property
+    def checks(self) -> list[Verdict]:
+        """What the case's checks say; their number follows from what was asked to be measured."""
+        return [v for v in self.verdicts if v.kind not in INCIDENTS]
+
+    @property
+    def incidents(self) -> list[Verdict]:
+        """What went wrong that no check is about: methods that raised, figures that are none."""
+        return [v for v in self.verdicts if v.kind in INCIDENTS]
+
+    @property
+    def crashed(self) -> list[results.Record]:
+        """Measurements that raised or whose worker died."""
+        return [
+            r for r in self.records if isinstance(r.outcome, Failed) and r.outcome.error != MISSING
         ]
 
     @property
@@ -98,7 +139,9 @@ class CaseResult:
         return next(drawn, named)
 
 
-def summarise(cases: Iterable[Case], records: Iterable[results.Record]) -> list[CaseResult]:
+def summarise(
+    cases: Iterable[Case], records: Iterable[results.Record], run: RunInfo | None = None
+) -> list[CaseResult]:
     """Group records by case and judge them; cases without records are left out."""
     known = list(records)
     found = []
@@ -108,8 +151,31 @@ def summarise(cases: Iterable[Case], records: Iterable[results.Record]) -> list[
             continue
         bare = CaseResult(case, own, (), ())
         verdicts = judge(case, bare.outcomes)
-        found.append(CaseResult(case, own, tuple(verdicts), tuple(unjudged(case, verdicts))))
+        waiting = tuple(unjudged(case, verdicts))
+        found.append(CaseResult(case, own, tuple(verdicts), waiting, run))
     return found
+
+
+def beside(
+    cases: Sequence[Case], own: Sequence[CaseResult], info: RunInfo, folder: Path
+) -> list[CaseResult]:
+    """A run's results and those of the runs kept in its folder, in the order of the cases.
+
+    Cases that this version does not know any more are left out: see `forgotten`.
+    """
+    found = list(own)
+    for run in info.everything:
+        if run.started != info.started:
+            found += summarise(cases, complete(run, folder), run)
+    order = {case.name: place for place, case in enumerate(cases)}
+    return sorted(found, key=lambda result: order.get(result.case.name, -1))
+
+
+def forgotten(cases: Sequence[Case], info: RunInfo) -> list[str]:
+    """Cases that are kept from earlier runs and unknown to this version."""
+    known = {(case.name, method.name) for case in cases for method in case.methods}
+    kept = [task for run in info.kept for task in run["measured"]]
+    return list(dict.fromkeys(case for case, method, _ in kept if (case, method) not in known))
 
 
 def complete(info: RunInfo, folder: Path) -> list[results.Record]:
@@ -131,6 +197,60 @@ def complete(info: RunInfo, folder: Path) -> list[results.Record]:
 def all_passed(summary: Sequence[CaseResult]) -> bool:
     """Whether something was judged and every check of every case holds."""
     return bool(summary) and all(result.passed for result in summary)
+
+
+@dataclass(frozen=True)
+class Tally:
+    """Counts of a summary, as the terminal, the page and the numbers all give them."""
+
+    cases: int
+    good_cases: int
+    checks: int
+    good_checks: int
+    measurements: int
+    crashed: int
+    missing: int
+    passed: bool
+
+    @property
+    def failing(self) -> int:
+        """Checks that do not hold."""
+        return self.checks - self.good_checks
+
+    @property
+    def sentence(self) -> str:
+        """What came of it, in a line."""
+        if not self.cases:
+            return "Nothing was judged."
+        if self.passed:
+            return f"All {counted(self.checks, 'check')} of {counted(self.cases, 'case')} hold."
+        said = []
+        if self.failing:
+            fail = "fails" if self.failing == 1 else "fail"
+            said.append(f"{self.failing} of {counted(self.checks, 'check')} {fail}")
+        else:
+            said.append(f"{counted(self.checks, 'check')} hold, but not every case is sound")
+        if self.crashed:
+            said.append(f"{counted(self.crashed, 'measurement')} crashed")
+        if self.missing:
+            are = "is" if self.missing == 1 else "are"
+            said.append(f"{counted(self.missing, 'measurement')} {are} missing")
+        return "; ".join(said) + "."
+
+
+def tally(summary: Sequence[CaseResult]) -> Tally:
+    """Count what a summary holds."""
+    checks = [v for result in summary for v in result.checks]
+    return Tally(
+        cases=len(summary),
+        good_cases=sum(result.passed for result in summary),
+        checks=len(checks),
+        good_checks=sum(v.passed for v in checks),
+        measurements=sum(len(result.records) for result in summary),
+        crashed=sum(len(result.crashed) for result in summary),
+        missing=sum(len(result.missing) for result in summary),
+        passed=all_passed(summary),
+    )
 
 
 @dataclass(frozen=True)
@@ -191,22 +311,34 @@ def _orders(
 
 
 def as_json(summary: Sequence[CaseResult], info: RunInfo) -> str:
-    """All numbers of a run, without arrays; not-a-number is null."""
+    """All numbers of a run, without arrays; not-a-number is null.
+
+    The format is described by `cmverify.report.numbers`.
+    """
     cases = {}
     for result in summary:
-        case = result.case
+        case, run = result.case, result.run or info
         cases[case.name] = {
             "title": case.title,
             "section": case.section,
             "shows": case.shows,
+            "length": case.length,
+            "primary": case.primary,
             "passed": result.passed,
+            "run": {"level": run.level, "started": run.started, "command": run.command},
             "quantities": dict(case.quantities),
             "verdicts": [verdict.as_dict() for verdict in result.verdicts],
             "not_judged_at_this_level": [[c.method, c.quantity] for c in result.unjudged],
             "measurements": [asdict(row) for row in table(result)],
             "work_precision": [asdict(p) for p in precision.points(case, result.outcomes)],
         }
-    data = {"passed": all_passed(summary), "run": asdict(info), "cases": cases}
+    data = {
+        "format": numbers.FORMAT,
+        "passed": all_passed(summary),
+        "counts": asdict(tally(summary)),
+        "run": asdict(info),
+        "cases": cases,
+    }
     return json.dumps(_finite(data), indent=1, allow_nan=False)
 
 

@@ -11,7 +11,7 @@ from rich.table import Table
 
 from cmverify.case import Case, Level
 from cmverify.judge import precision
-from cmverify.report.summary import CaseResult, all_passed, table
+from cmverify.report.summary import CaseResult, table, tally
 
 
 def cases_table(cases: Sequence[Case]) -> Table:
@@ -34,12 +34,12 @@ def print_verdicts(console: Console, summary: Sequence[CaseResult]) -> None:
     for column in ("", "case", "checks", "tightest bound", "measured", "must hold"):
         view.add_column(column, justify="right" if column in ("checks", "measured") else "left")
     for result in summary:
-        good = sum(v.passed for v in result.verdicts)
+        good = sum(v.passed for v in result.checks)
         row = ["", "", ""]
         if near := result.tightest:
             row = [f"{near.quantity}, {near.method}, {near.where}", f"{near.value:.3g}", near.asked]
         mark = "[green]✓[/]" if result.passed else "[red]✗[/]"
-        view.add_row(mark, result.case.name, f"{good}/{len(result.verdicts)}", *row)
+        view.add_row(mark, result.case.name, f"{good}/{len(result.checks)}", *row)
     console.print(view)
     verdicts = [v for result in summary for v in result.verdicts]
     failed = [v for v in verdicts if not v.passed]
@@ -53,10 +53,9 @@ def print_verdicts(console: Console, summary: Sequence[CaseResult]) -> None:
             highlight=False,
         )
     print_missing(console, summary)
-    if all_passed(summary):
-        console.print(f"[bold green]All {len(verdicts)} checks hold.[/]")
-    else:
-        console.print(f"[bold red]{len(failed)} of {len(verdicts)} checks fail.[/]")
+    counts = tally(summary)
+    style = "bold green" if counts.passed else "bold red"
+    console.print(f"[{style}]{escape(counts.sentence)}[/]", highlight=False)
 
 
 def print_missing(console: Console, summary: Sequence[CaseResult]) -> None:

@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 from typer.testing import CliRunner
@@ -11,6 +12,7 @@ from typer.testing import CliRunner
 from cmverify.cases import registry
 from cmverify.cli import app
 from cmverify.doctor import examine
+from cmverify.report import summary
 from cmverify.run import environment, results, runner
 from references.fem import mesh
 from references.fenicsx import bridge
@@ -37,7 +39,7 @@ def test_run_writes_everything_and_succeeds(toys, tmp_path):
     given = ["run", "toy", "--out", str(out), "--json", str(numbers), "--jobs", "1"]
     found = cli.invoke(app, given)
     assert found.exit_code == 0, found.output
-    assert "All 3 checks hold" in found.output
+    assert "All 3 checks of 1 case hold" in found.output
     assert (out / "index.html").is_file()
     assert json.loads(numbers.read_text())["passed"] is True
     assert list((out / "fields").glob("*.vtu"))
@@ -48,6 +50,29 @@ def test_run_writes_everything_and_succeeds(toys, tmp_path):
     assert "bond/trapezium" in shown.output
     resumed = cli.invoke(app, [*given, "--resume"])
     assert resumed.output.count("reused") == 2
+
+
+def test_a_run_of_some_cases_keeps_those_of_the_others(toys, tmp_path):
+    """With their verdicts, and where they come from; the exit code is about what was run."""
+    given = ["--jobs", "1", "--out", str(tmp_path)]
+    assert cli.invoke(app, ["run", "toy", "raising", *given]).exit_code == 1
+    first = json.loads((tmp_path / "run.json").read_text())
+    again = cli.invoke(app, ["run", "toy", *given])
+    assert again.exit_code == 0, again.output
+    said = again.output.replace("\n", " ")
+    assert "1 case is kept from earlier runs" in said
+    assert "of which fail: raising" in said
+    numbers = json.loads((tmp_path / "results.json").read_text())
+    assert set(numbers["cases"]) == {"toy", "raising"}
+    assert numbers["cases"]["raising"]["run"]["command"] == first["command"]
+    assert not numbers["passed"]
+    page = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert "1 case was not measured again" in page
+    assert "Beside the run before" in page
+    info = summary.load_info(tmp_path)
+    assert [task[0] for run in info.kept for task in run["measured"]] == ["raising", "raising"]
+    whole = replace(info, measured=[*info.measured, ["raising", "bond/trapezium", 10]], kept=[])
+    assert whole.keeping(info).kept == []
 
 
 def test_one_failure_is_exit_code_one(toys, tmp_path):
