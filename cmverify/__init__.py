@@ -26,6 +26,7 @@ _HOME = dirname(dirname(abspath(__file__)))
 
 __all__ = [
     "CalibrationError",
+    "ChiralTensor",
     "ConductivityTensor",
     "ConvergenceError",
     "Cosine",

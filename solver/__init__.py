@@ -17,6 +17,7 @@ from .errors import (
 from .fracture import Programme, Toughness
 from .geometry import Crack, Region, disc, polygon, rectangle
 from .material import (
+    ChiralTensor,
     ConductivityTensor,
     Cosine,
     ElasticTensor,
@@ -37,6 +38,7 @@ from .strained import strained
 
 __all__ = [
     "CalibrationError",
+    "ChiralTensor",
     "ConductivityTensor",
     "ConvergenceError",
     "Cosine",

@@ -40,6 +40,7 @@ from cmverify.exchange.values import (
     Scalar,
     ScalarInTime,
     SteadyForceOrSource,
+    Triple,
     TripleInTime,
     VectorInTime,
 )
@@ -172,6 +173,11 @@ class _Massive(Table):
         default=None,
         description="Of a polar solid: [[E3131, E3132], [E3132, E3232]], N, before it is turned",
         examples=[[[1.0, 0.0], [0.0, 1.0]]],
+    )
+    turn: Triple | None = Field(
+        default=None,
+        description="Of a chiral solid: rotations of its points per ε11, ε22 and 2 ε12, before it "
+        "is turned",
     )
 
 

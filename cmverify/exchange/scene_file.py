@@ -364,6 +364,7 @@ def _inclusion(table: model.Inclusion, material: Any, folder: Path, step: float)
 
 def _material(table: Any) -> Any:
     from solver import (
+        ChiralTensor,
         ConductivityTensor,
         ElasticTensor,
         ElectricConductivityTensor,
@@ -388,9 +389,11 @@ def _material(table: Any) -> Any:
             else ElasticTensor(table.voigt)
         )
     else:
-        own = ("kind", "angle_degrees", "density", "bending")
+        own = ("kind", "angle_degrees", "density", "bending", "turn")
         values = {k: v for k, v in table if k not in own and v is not None}
         material = getattr(ElasticTensor, table.kind)(**values)
+    if (turn := getattr(table, "turn", None)) is not None:
+        material = ChiralTensor(material, turn)
     if (bending := getattr(table, "bending", None)) is not None:
         material = PolarTensor(material, bending)
     angle = getattr(table, "angle_degrees", 0.0)

@@ -235,6 +235,7 @@ SteadyForceOrSource = Annotated[
     _schema(anyOf=[_list(_NUMBER, 2), _NUMBER]),
 ]
 Point = Annotated[list[float], BeforeValidator(numbers(2)), _schema(**_list(_NUMBER, 2))]
+Triple = Annotated[list[float], BeforeValidator(numbers(3)), _schema(**_list(_NUMBER, 3))]
 Points = Annotated[
     list[list[float]], BeforeValidator(numbers(0, 2)), _schema(**_list(_list(_NUMBER, 2), 0))
 ]

@@ -62,6 +62,30 @@ def effective_voigt(Kn: float, Kt: float, beta: float) -> Floats:
     return np.array([[c11, c12, c16], [c12, c11, -c16], [c16, -c16, 0.5 * shear]])
 
 
+def effective_turn(Kn: float, Kt: float, beta: float) -> Floats:
+    """What the blocks turn by beside the displacement's own rotation, per unit strain.
+
+    Parameters
+    ----------
+    Kn, Kt, beta : float
+        As of `effective_voigt`.
+
+    Returns
+    -------
+    ndarray, (3,)
+        r in theta - omega = r . (e11, e22, 2 e12): M/(2 D) (1, 1, 0), a dilation's alone.
+
+    Raises
+    ------
+    ValueError
+        As `effective_voigt`.
+    """
+    effective_voigt(Kn, Kt, beta)
+    c, s = np.cos(beta), np.sin(beta)
+    turn = 0.5 * (Kn - Kt) * s * c / (Kn * s * s + Kt * c * c)
+    return np.array([turn, turn, 0.0])
+
+
 def interface_stiffness(
     young: float, poisson: float, length: float, thickness: float
 ) -> tuple[float, float]:

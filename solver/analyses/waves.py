@@ -27,7 +27,7 @@ from ..arrays import Array
 from ..blas import one_thread
 from ..bonds import Cells
 from ..errors import SceneError
-from ..material import PolarTensor
+from ..material import ChiralTensor, PolarTensor
 from ..problem import Description, Discretisation, Forcing
 from ..problem.conditions import Value
 from ..result import Result, Table
@@ -272,6 +272,11 @@ def _checked(
         raise SceneError(f"scheme must be 'verlet' or 'newmark', not {scheme!r}")
     if rotations not in ("condensed", "inertia"):
         raise SceneError(f"rotations must be 'condensed' or 'inertia', not {rotations!r}")
+    if rotations == "inertia" and isinstance(scene.material, ChiralTensor):
+        raise SceneError(
+            "rotations of a chiral solid follow its strain, and an inertia would hold them back: "
+            "leave them massless (rotations='condensed')"
+        )
     if rotations == "inertia" and isinstance(scene.material, PolarTensor):
         raise SceneError(
             "rotations of a polar solid have an inertia of the solid's own, which this model does "

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array, Indices, Mask
 from ..errors import SceneError
 from ..geometry import Where, select
-from ..material import ElasticModuli, Family, PolarModuli
+from ..material import ChiralModuli, ElasticModuli, Family, PolarModuli
 from ..material.strains import elongations
 from ..operators import segments
 from ..problem import Discretisation, thickness
@@ -351,6 +351,11 @@ def _thickness(discretisation: Discretisation, half: int) -> Array:
 
 
 def _refuse_negative(moduli: ElasticModuli, criterion: Criterion) -> None:
+    if isinstance(moduli, ChiralModuli):
+        raise SceneError(
+            "bonds of a chiral solid do not break yet: what of their energy k_nt s γ counts "
+            "towards w_c is not known"
+        )
     if moduli.normal.min() < 0:
         raise SceneError(
             "some bonds of this material have a negative axial stiffness k_n: stretching them "

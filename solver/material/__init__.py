@@ -8,6 +8,7 @@ from .influence import CONSTANT, Influence
 from .laws import AngularLaw, Cosine, Fourfold, TwoHarmonic, UniformShear
 from .mixture import Mixture, together
 from .moduli import (
+    ChiralModuli,
     ConductiveModuli,
     ElasticModuli,
     ElectricModuli,
@@ -22,6 +23,7 @@ from .stability import Stability, assess
 from .symbol import acoustic_tensor, brillouin_zone, condensed_symbol, margins
 from .tensors import (
     BendingTensor,
+    ChiralTensor,
     ConductivityTensor,
     ElasticTensor,
     ElectricConductivityTensor,
@@ -37,6 +39,8 @@ __all__ = [
     "AreaRule",
     "BendingTensor",
     "Calibration",
+    "ChiralModuli",
+    "ChiralTensor",
     "ConductiveModuli",
     "ConductivityTensor",
     "Cosine",

@@ -13,7 +13,7 @@ from ..errors import CalibrationError, InadmissibleMaterialError, NotRepresentab
 from .calibration import Calibration, calibrate, representable, representable_by_directions
 from .family import Family
 from .laws import AngularLaw, TwoHarmonic, UniformShear
-from .moduli import Moduli, effective_tensor
+from .moduli import ChiralModuli, Moduli, effective_tensor
 from .stability import Stability, assess
 from .tensors import ElasticTensor, Material
 
@@ -128,6 +128,11 @@ def require_admissible(family: Family, moduli: Moduli) -> Stability:
 
 def _instead_of(family: Family, moduli: Moduli) -> str:
     """`remedy` for the tensor that these moduli make."""
+    if isinstance(moduli, ChiralModuli):
+        return (
+            "Of a chiral solid other laws (law=UniformShear()) and other m may be stable, and "
+            "smaller turns are."
+        )
     tensor = effective_tensor(family, moduli)
     try:
         material = moduli.tensor(tensor)

@@ -18,6 +18,18 @@ has the same law as a conductivity (Eqs. 179–181). Three calibrations choose t
     Non-negative moduli with exact sums, nearest (in relative least squares) to the smooth law;
     in elasticity subject also to Σ α Λ |ξ| k_t v_γ = 0, which keeps rotation and homogeneous
     strain apart.
+
+**Chiral solids** (`ChiralTensor`). With γ = v_γ·ε − φ, φ = θ − ω, bonds of the energy
+½ |ξ| (k_n s² + 2 k_nt s γ + k_t γ²) make, w = ½ α Λ |ξ| Δv,
+
+    C' = Σ w (k_n v_s v_sᵀ + k_t v_γ v_γᵀ + k_nt (v_s v_γᵀ + v_γ v_sᵀ)),
+    c = Σ w (k_t v_γ + k_nt v_s),     Σ w k_t = 4 (C'66 − C'12) = 4 μ_c,
+
+the last because v_γ6² − v_γ1 v_γ2 = ¼ while v_s6² = v_s1 v_s2 and the mixed products cancel, in
+every direction. W = ½ ε·C'ε − φ c·ε + ½ 4 μ_c φ² is least at φ = r·ε with c = 4 μ_c r, and leaves
+C = C' − 4 μ_c r rᵀ; so C66 − C12 = μ_c (1 + 4 (r1 r2 − r3²)): C and r fix μ_c, C' and c, nine sums.
+k_n and k_t follow their law with six coefficients, k_nt has the harmonics 0 and 2. Without k_nt a
+dilation ε = (1, 1, 0) couples to nothing (v_γ·ε = 0 in every bond); with it c1 + c2 = Σ w k_nt.
 """
 
 from __future__ import annotations
@@ -34,6 +46,7 @@ from .laws import AngularLaw, Cosine, TwoHarmonic, UniformShear
 from .moduli import (
     PAIRS2,
     PAIRS3,
+    ChiralModuli,
     ConductiveModuli,
     ElasticModuli,
     ElectricModuli,
@@ -46,6 +59,7 @@ from .moduli import (
 )
 from .positive import closest, feasible
 from .tensors import (
+    ChiralTensor,
     ConductivityTensor,
     ElasticTensor,
     ElectricConductivityTensor,
@@ -126,6 +140,46 @@ def _(
     assert isinstance(plain, ElasticModuli)
     bending = _conductive(family, material.bending, calibration, _of_gradients(law))
     return PolarModuli(plain.normal, plain.shear, bending)
+
+
+@_calibrated.register
+def _(
+    material: ChiralTensor, family: Family, calibration: Calibration, law: AngularLaw | None
+) -> Moduli:
+    if calibration != "lattice":
+        raise CalibrationError(
+            f"chiral solids have a lattice calibration only, none called {calibration!r}"
+        )
+    moduli = _chiral(family, material, TwoHarmonic() if law is None else law)
+    if law is None and moduli.shear.min() < 0 < moduli.shear.max():
+        return _chiral(family, material, UniformShear())
+    return moduli
+
+
+def _chiral(family: Family, material: ChiralTensor, law: AngularLaw) -> ChiralModuli:
+    psi, weight = family.angle, bond_weights(family, material)
+    plain = ElasticTensor(material.unturned)
+    basis_n, basis_t = law.elastic(psi, plain)
+    basis_x = np.stack([np.ones_like(psi), np.cos(2 * psi), np.sin(2 * psi)])
+    stretch, shear = stretch_rows(psi)
+    a, b = PAIRS3
+    moments_n, moments_t = elastic_moments(psi)
+    mixed = stretch[a] * shear[b] + shear[a] * stretch[b]
+    # Six moments of C' and three of c, by the law's coefficients and those of k_nt.
+    of_law = [
+        (weight * moments_n) @ basis_n.T + (weight * moments_t) @ basis_t.T,
+        (weight * shear) @ basis_t.T,
+    ]
+    of_cross = [(weight * mixed) @ basis_x.T, (weight * stretch) @ basis_x.T]
+    system = np.hstack([np.vstack(of_law), np.vstack(of_cross)])
+    target = np.concatenate([plain.voigt[PAIRS3], material.coupling])
+    found = _solve(system, target, f"{type(law).__name__} law (lattice, chiral)")
+    count = len(basis_n)
+    return ChiralModuli(
+        _mirrored(found[:count] @ basis_n),
+        _mirrored(found[:count] @ basis_t),
+        _mirrored(found[count:] @ basis_x),
+    )
 
 
 def _of_gradients(law: AngularLaw | None) -> AngularLaw:

@@ -47,6 +47,11 @@ class Mixture(Moduli):
     of: Indices
 
     def __post_init__(self) -> None:
+        if any("s+γ" in moduli.strains for moduli in self.solids):
+            raise SceneError(
+                "chiral solids have no inclusions yet, nor are they any: what their points' turns "
+                "do at interfaces is not known"
+            )
         if len({moduli.strains for moduli in self.solids}) > 1:
             raise SceneError(_CENTRAL)
         if "χ" in self.strains:

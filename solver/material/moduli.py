@@ -198,6 +198,45 @@ class PolarModuli(ElasticModuli):
 
 
 @dataclass(frozen=True, eq=False)
+class ChiralModuli(ElasticModuli):
+    """The same and k_nt of every bond, shape (n,): ½ |ξ| (k_n s² + 2 k_nt s γ + k_t γ²).
+
+    As a sum of squares (k_n − k_nt) s² + (k_t − k_nt) γ² + k_nt (s + γ)²: blocks, kernels and
+    surfaces know it without a word more. Single terms may be negative where the whole is not: a
+    bond stores energy in every state if k_n ≥ 0, k_t ≥ 0 and k_nt² ≤ k_n k_t.
+    """
+
+    cross: Array
+
+    @property
+    def strains(self) -> tuple[str, ...]:
+        return "s", "γ", "s+γ"
+
+    @property
+    def stiffness(self) -> Array:
+        return np.stack([self.normal - self.cross, self.shear - self.cross, self.cross])
+
+    @property
+    def components(self) -> int:
+        return 3
+
+    @property
+    def non_negative(self) -> bool:
+        least = min(self.normal.min(), self.shear.min())
+        return bool(least >= 0 and (self.cross**2 <= self.normal * self.shear).all())
+
+    def homogeneous(self, normal: Array) -> Array:
+        stretch, shear = homogeneous_stretch(normal), homogeneous_shear(normal)
+        return np.stack([stretch, shear, stretch + shear])
+
+    def absolute(self) -> ChiralModuli:
+        pairs = np.array([[self.normal, self.cross], [self.cross, self.shear]])
+        values, vectors = np.linalg.eigh(np.moveaxis(pairs, 2, 0))
+        found = np.einsum("nia,na,nja->ijn", vectors, np.abs(values), vectors)
+        return ChiralModuli(found[0, 0], found[1, 1], found[0, 1])
+
+
+@dataclass(frozen=True, eq=False)
 class ConductiveModuli(Moduli):
     """k of every bond of the family, shape (n,), W/(m K) per m² and unit thickness."""
 

@@ -7,6 +7,9 @@ A bond from p to q has the normal n, the tangent t (n turned by +90°) and the l
     χ = (θ_q − θ_p)/ℓ                              bending (Eq. 3), of polar solids only
     g = (T_q − T_p)/ℓ                              gradient of a temperature or potential
 
+The sum s + γ is a strain, too: as k (s + γ)² = k s² + 2 k s γ + k γ² it couples both, which chiral
+solids need, and no kernel learns of it.
+
 The arms a_p, a_q say how far each rotation carries the bond's point of contact, its middle: half
 the length each for a whole bond. A bond that ends at the surface keeps that point
 (`solver.bonds.ended`).
@@ -51,7 +54,7 @@ def elongations(strains: tuple[str, ...], normal: Array, difference: Array, turn
 
     Parameters
     ----------
-    strains : tuple of {"s", "γ", "χ", "g"}
+    strains : tuple of {"s", "γ", "s+γ", "χ", "g"}
     normal : ndarray, shape (2, ...)
     difference : ndarray, shape (components, ...)
         Values at q less those at p.
@@ -65,23 +68,28 @@ def elongations(strains: tuple[str, ...], normal: Array, difference: Array, turn
             found.append(stretched.py_func(n1, n2, d[0], d[1]))
         elif strain == "γ":
             found.append(sheared.py_func(n1, n2, d[0], d[1], turn))
+        elif strain == "s+γ":
+            both = stretched.py_func(n1, n2, d[0], d[1])
+            found.append(both + sheared.py_func(n1, n2, d[0], d[1], turn))
         elif strain == "χ":
             found.append(bent.py_func(d[2]) + 0.0 * n1)
         elif strain == "g":
             found.append(d[0] + 0.0 * n1)
         else:
-            raise ValueError(f"unknown strain {strain!r} of a bond; known: s, γ, χ, g")
+            raise ValueError(f"unknown strain {strain!r} of a bond; known: s, γ, s+γ, χ, g")
     return np.stack(np.broadcast_arrays(*found))
 
 
 def directions(strains: tuple[str, ...], normal: Array) -> Array:
-    """Unit vectors along which the force of each strain acts, or its flow runs.
+    """Vectors along which the force of each strain acts, or its flow runs.
 
-    n for s and g, t for γ, none for χ, which exerts a couple alone; `normal` has shape (2, ...),
+    n for s and g, t for γ, n + t for s + γ, none for χ, which exerts a couple alone; `normal` has
+    shape (2, ...),
     the result (strains, 2, ...).
     """
     n1, n2 = normal
-    along = {"γ": np.stack([-n2, n1]), "χ": np.zeros_like(normal)}
+    tangent = np.stack([-n2, n1])
+    along = {"γ": tangent, "s+γ": normal + tangent, "χ": np.zeros_like(normal)}
     return np.stack([along.get(strain, np.asarray(normal)) for strain in strains])
 
 

@@ -326,6 +326,8 @@ class PolarTensor(ElasticTensor):
     def __init__(
         self, voigt: ArrayLike | ElasticTensor, bending: ArrayLike | BendingTensor | None = None
     ) -> None:
+        if isinstance(voigt, ChiralTensor):
+            raise ValueError("a polar solid cannot be chiral yet: no bonds with both are known")
         super().__init__(voigt.voigt if isinstance(voigt, ElasticTensor) else voigt)
         if bending is None:
             raise ValueError(
@@ -355,6 +357,86 @@ class PolarTensor(ElasticTensor):
     def rotated(self, angle: float) -> PolarTensor:
         """The same solid turned anticlockwise by `angle` (rad)."""
         return PolarTensor(super().rotated(angle), self.bending.rotated(angle))
+
+
+@dataclass(frozen=True, eq=False)
+class ChiralTensor(ElasticTensor):
+    """Elastic solid whose points turn when it is strained: θ − ω = r·(ε11, ε22, 2ε12).
+
+    Beside the displacement's own rotation ω, as the blocks of a tetrachiral lattice do in a mere
+    dilation. Stresses are those of C: with φ = θ − ω free, the energy
+
+        W = ½ ε·(C + 4 μ_c r rᵀ) ε − 4 μ_c φ r·ε + ½ 4 μ_c φ²
+
+    is least at φ = r·ε, where it is ½ ε·C ε. Bonds with k_n and k_t alone make no such solid: the
+    coupling of φ to a dilation ε = (1, 1, 0) is Σ w k_t v_γ·ε, and no bond is sheared then. With a
+    third modulus, k_nt s γ, it is Σ w k_nt. The sums over bonds (`solver.material.calibration`)
+    leave no choice of the Cosserat modulus μ_c.
+
+    Parameters
+    ----------
+    voigt : array_like, shape (3, 3), or ElasticTensor
+        C, with rotations free.
+    turn : array_like, shape (3,)
+        r, rad per unit strain; it turns with the solid as a stress does.
+
+    Raises
+    ------
+    ValueError
+        If C is not positive definite, r is not finite, or μ_c is not positive.
+
+    Examples
+    --------
+    >>> solid = ChiralTensor(ElasticTensor.isotropic(E=2.4, nu=0.2), [0.5, 0.5, 0.0])
+    >>> round(solid.cosserat_modulus, 12)  # half of C66 − C12
+    0.25
+    """
+
+    turn: Array
+
+    def __init__(self, voigt: ArrayLike | ElasticTensor, turn: ArrayLike | None = None) -> None:
+        super().__init__(voigt.voigt if isinstance(voigt, ElasticTensor) else voigt)
+        if isinstance(voigt, PolarTensor):
+            raise ValueError("a polar solid cannot be chiral yet: no bonds with both are known")
+        found = np.array(turn, dtype=np.float64) if turn is not None else np.empty(0)
+        if found.shape != (3,) or not np.isfinite(found).all():
+            raise ValueError(
+                f"a chiral solid needs the three finite turns of its points under unit strains, "
+                f"not {turn!r}"
+            )
+        object.__setattr__(self, "turn", found)
+        if not self.cosserat_modulus > 1e-9 * np.abs(self.voigt).max():
+            raise ValueError(
+                f"no chiral solid of bonds: its Cosserat modulus, (C66 − C12)/(1 + 4 (r1 r2 − r3²))"
+                f" = {self.voigt[2, 2] - self.voigt[0, 1]:.6g} Pa/{self._share:.6g}, must be "
+                f"positive to hold the rotations of its points"
+            )
+
+    @property
+    def _share(self) -> float:
+        r1, r2, r3 = self.turn
+        return float(1.0 + 4.0 * (r1 * r2 - r3 * r3))
+
+    @property
+    def cosserat_modulus(self) -> float:
+        """μ_c = (C66 − C12)/(1 + 4 (r1 r2 − r3²)), Pa: sums over bonds make it that."""
+        if not self._share > 0:
+            return -np.inf
+        return float(self.voigt[2, 2] - self.voigt[0, 1]) / self._share
+
+    @property
+    def coupling(self) -> Array:
+        """4 μ_c r, shape (3,), Pa: stress per rotation, and couple per strain."""
+        return np.asarray(4.0 * self.cosserat_modulus * self.turn)
+
+    @property
+    def unturned(self) -> Array:
+        """C + 4 μ_c r rᵀ, shape (3, 3), Pa: where points turn with the displacement alone."""
+        return np.asarray(self.voigt + np.outer(self.coupling, self.turn))
+
+    def rotated(self, angle: float) -> ChiralTensor:
+        """The same solid turned anticlockwise by `angle` (rad)."""
+        return ChiralTensor(super().rotated(angle), stress_rotation(-angle) @ self.turn)
 
 
 Material = ElasticTensor | ConductivityTensor

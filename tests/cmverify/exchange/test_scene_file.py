@@ -211,6 +211,44 @@ def test_polar_solids(tmp_path):
         scene_file.request(tmp_path / "polar.toml")
 
 
+def test_chiral_solids(tmp_path):
+    chiral = (
+        PLATE
+        + """
+    [material]
+    kind = "isotropic"
+    E = 1.0
+    nu = 0.2
+    turn = [0.3, 0.3, 0.0]
+    [[support]]
+    layer_cells = 3.5
+    displacement = ["0.1*x", "0.1*y"]
+    rotation = 0.06
+    """
+    )
+    (tmp_path / "chiral.toml").write_text(chiral)
+    found = scene_file.request(tmp_path / "chiral.toml").run()
+    np.testing.assert_allclose(found.rotation, 0.06, atol=1e-10)
+    grow = chiral + "[fracture]\nG1 = 1.0\nstop = 1.0\n"
+    bent = chiral.replace("turn", "bending = [[0.1, 0.0], [0.0, 0.1]]\n    turn")
+    two = chiral + (
+        '[[inclusion]]\n[[inclusion.region]]\nshape = "disc"\nradius = 0.2\n'
+        '[inclusion.material]\nkind = "isotropic"\nE = 2.0\nnu = 0.2\n'
+    )
+    shaken = chiral.replace("turn", "density = 1.0\n    turn") + (
+        '[waves]\ninitial = [0, 0]\nend = 1.0\nrotations = "inertia"\n'
+    )
+    for text, says in (
+        (grow, "do not break yet"),
+        (bent, "cannot be chiral yet"),
+        (two, "no inclusions yet"),
+        (shaken, "leave them massless"),
+    ):
+        (tmp_path / "chiral.toml").write_text(text)
+        with pytest.raises(SceneFileError, match=says):
+            scene_file.request(tmp_path / "chiral.toml").run()
+
+
 def test_conductors_of_current_and_temperatures(tmp_path):
     live = (
         PLATE

@@ -108,3 +108,21 @@ def test_bad_input_is_refused():
         tetrachiral.interface_stiffness(1.0, 0.7, 1.0, 1.0)
     with pytest.raises(ValueError, match="side"):
         tetrachiral.cell_geometry(0.0, 0.1)
+
+
+@quick
+@given(stiffness, stiffness, angles)
+def test_blocks_turn_to_the_least_energy(Kn, Kt, beta):
+    """The rotation that the condensed cell of rigid blocks takes, from interface to interface."""
+    full = np.zeros((4, 4))
+    for along in (np.array([1.0, 0.0]), np.array([0.0, 1.0])):
+        across = np.array([-along[1], along[0]])
+        normal = np.cos(beta) * along + np.sin(beta) * across
+        tangent = -np.sin(beta) * along + np.cos(beta) * across
+        for k, d in ((Kn, normal), (Kt, tangent)):
+            strain = np.outer(d, along)
+            row = np.array([strain[0, 0], strain[1, 1], 0.5 * (strain[0, 1] + strain[1, 0]),
+                            -d @ across])  # fmt: skip
+            full += k * np.outer(row, row)
+    wanted = -full[3, :3] / full[3, 3]
+    np.testing.assert_allclose(tetrachiral.effective_turn(Kn, Kt, beta), wanted, atol=1e-11)

@@ -10,6 +10,7 @@ from scipy.optimize import linprog
 
 from solver import (
     CalibrationError,
+    ChiralTensor,
     ConductivityTensor,
     Cosine,
     ElasticTensor,
@@ -20,6 +21,7 @@ from solver import (
     UniformShear,
 )
 from solver.material import (
+    ChiralModuli,
     ConductiveModuli,
     ElasticModuli,
     PolarModuli,
@@ -67,6 +69,72 @@ def test_sums_of_k_b_are_the_bending_stiffness(family, bending, calibration):
     np.testing.assert_array_equal(moduli.shear, plain.shear)
     if calibration == "positive":
         assert moduli.bending.min() >= 0
+
+
+# ---- chiral solids -------------------------------------------------------------------------------
+
+
+@few
+@given(
+    st.builds(Family, st.sampled_from([3, 5, 4.5]), st.sampled_from([1.0, 0.01])),
+    st.sampled_from([ElasticTensor.isotropic(2.4, 0.2).voigt, FIG_7]),
+    st.lists(st.floats(-0.3, 0.3), min_size=3, max_size=3),
+)
+def test_sums_of_k_nt_are_the_turns_of_a_chiral_solid(family, voigt, turn):
+    """C, C', c and 4 μ_c from the bonds one by one, and the rotation of least energy."""
+    solid = ChiralTensor(voigt, turn)
+    moduli = calibrate(family, solid)
+    assert isinstance(moduli, ChiralModuli)
+    weight = bond_weights(family, solid)
+    stretch, shear = stretch_rows(family.angle)
+    pair = np.array([[moduli.normal, moduli.cross], [moduli.cross, moduli.shear]])
+    # Each bond's strains of (ε11, ε22, 2ε12, φ): φ shears it by −1.
+    one = np.stack([np.vstack([stretch, 0 * weight]), np.vstack([shear, -1 + 0 * weight])])
+    energy = np.einsum("o,abo,aio,bjo->ij", weight, pair, one, one)
+    assert relative(energy[:3, :3], solid.unturned) < 1e-10
+    assert energy[3, 3] == pytest.approx(4 * solid.cosserat_modulus)
+    assert np.abs(energy[3, :3] + solid.coupling).max() < 1e-10 * np.abs(energy).max()
+    found = -energy[3, :3] / energy[3, 3]
+    np.testing.assert_allclose(found, turn, atol=1e-10)
+    assert relative(effective_tensor(family, moduli), voigt) < 1e-10
+    # The form of two strains is that of three squares.
+    squares = np.stack([one[0], one[1], one[0] + one[1]])
+    same = np.einsum("o,ao,aio,ajo->ij", weight, moduli.stiffness, squares, squares)
+    assert relative(same, energy) < 1e-12
+    least = np.linalg.eigvalsh(np.moveaxis(pair, 2, 0)).min()
+    assert moduli.non_negative == bool(least >= 0) or abs(least) < 1e-12 * np.abs(pair).max()
+    whole = moduli.absolute()
+    assert whole.non_negative or (whole.cross**2 - whole.normal * whole.shear).max() < 1e-12 * (
+        np.abs(pair).max() ** 2
+    )
+
+
+def test_without_k_nt_a_dilation_turns_nothing():
+    """Whatever k_n and k_t are: Σ w k_t v_γ·(1, 1, 0) = 0, bond by bond."""
+    _, shear = stretch_rows(np.linspace(0, np.pi, 7))
+    np.testing.assert_allclose(shear[0] + shear[1], 0.0, atol=1e-16)
+
+
+def test_four_neighbours_are_the_tetrachiral_blocks():
+    """m = 1: the bonds of the block lattice itself, its normals turned by β."""
+    from references.analytic.tetrachiral import effective_turn, effective_voigt
+
+    normal, shear, beta = 3.0, 1.0, 0.4
+    c, s = np.cos(beta), np.sin(beta)
+    solid = ChiralTensor(effective_voigt(normal, shear, beta), effective_turn(normal, shear, beta))
+    family = Family(1, 1.0, "full")
+    moduli, weight = calibrate(family, solid), 2 * bond_weights(family, solid)
+    np.testing.assert_allclose(weight * moduli.normal, normal * c * c + shear * s * s)
+    np.testing.assert_allclose(weight * moduli.shear, normal * s * s + shear * c * c)
+    np.testing.assert_allclose(weight * moduli.cross, (normal - shear) * s * c)
+    assert moduli.non_negative
+
+
+@pytest.mark.parametrize("calibration", ["continuum", "positive"])
+def test_chiral_solids_have_the_lattice_calibration_alone(calibration):
+    solid = ChiralTensor(ElasticTensor.isotropic(2.4, 0.2), [0.2, 0.2, 0.0])
+    with pytest.raises(CalibrationError, match="lattice calibration only"):
+        calibrated(Family(3, 1.0), solid, calibration)
 
 
 @exact

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from solver import ConductivityTensor, ElasticTensor, PolarTensor
+from solver import ChiralTensor, ConductivityTensor, ElasticTensor, PolarTensor
 from solver.material import BendingTensor, stress_rotation
 from tests.solver.bodies import FIG_7, conductivities, exact, rotate_4, voigts
 
@@ -185,6 +185,39 @@ def test_polar_solids_hold_the_rotations_of_their_points():
     np.testing.assert_allclose(turned.bending.matrix, [[1.0, -0.5], [-0.5, 2.0]], atol=1e-14)
     np.testing.assert_allclose(turned.voigt, solid.voigt, atol=1e-14)
     assert PolarTensor(solid, BendingTensor.isotropic(1.0)).bending.matrix[0, 0] == 1.0
+
+
+def test_chiral_solids_turn_with_their_frame():
+    """r·ε is a number: it does not know in which frame it is written."""
+    solid = ChiralTensor(ElasticTensor.isotropic(2.4, 0.2), [0.3, -0.1, 0.2])
+    turned = solid.rotated(0.7)
+    strain = np.array([0.3, -0.2, 0.5])
+    q = stress_rotation(-0.7)
+    # Strains with 2 ε12 turn by the inverse transposed.
+    assert turned.turn @ np.linalg.solve(q.T, strain) == pytest.approx(solid.turn @ strain)
+    assert turned.cosserat_modulus == pytest.approx(solid.cosserat_modulus)
+    np.testing.assert_allclose(turned.rotated(-0.7).turn, solid.turn, atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("solid", "turn", "message"),
+    [
+        (ElasticTensor.isotropic(1.0, 0.34), [0.1, 0.1, 0.0], "must be positive"),
+        (ElasticTensor.isotropic(1.0, 0.2), [0.0, 0.0, 0.6], "must be positive"),
+        (ElasticTensor.isotropic(1.0, 0.2), None, "three finite turns"),
+        (ElasticTensor.isotropic(1.0, 0.2), [np.nan, 0, 0], "three finite turns"),
+        (PolarTensor(ElasticTensor.isotropic(1.0, 0.2), np.eye(2)), [0.1, 0, 0], "cannot be"),
+    ],
+)
+def test_chiral_solids_that_are_none(solid, turn, message):
+    with pytest.raises(ValueError, match=message):
+        ChiralTensor(solid, turn)
+
+
+def test_chiral_solids_are_no_polar_ones_yet():
+    chiral = ChiralTensor(ElasticTensor.isotropic(1.0, 0.2), [0.1, 0.1, 0.0])
+    with pytest.raises(ValueError, match="cannot be chiral yet"):
+        PolarTensor(chiral, np.eye(2))
 
 
 @pytest.mark.parametrize(

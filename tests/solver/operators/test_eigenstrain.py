@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from solver import (
+    ChiralTensor,
     Crack,
     ElasticTensor,
     ExpansionTensor,
@@ -125,6 +126,15 @@ def test_plane_strain_is_free_of_stress_in_the_plane():
                 # (1 + ν) α T, not α T.
                 slope = recovery.displacement_gradient(solution)[:, 0, 0]
                 np.testing.assert_allclose(slope, 1.2 * 0.7 * change, rtol=1e-9)
+
+
+def test_a_chiral_body_expands_freely():
+    """No stress, and points turn with the body alone: nothing strains its bonds."""
+    material = ChiralTensor(ElasticTensor.isotropic(2.4, 0.2), [0.2, 0.2, 0.0])
+    expansion = tensor(3)
+    for surface in SURFACES:
+        solution = heated(material, oblique, expansion, surface=surface)
+        assert np.abs(recovery.stress(solution)).max() < 1e-10 * size(material, expansion)
 
 
 def test_a_polar_body_bears_couple_stress_under_a_linear_temperature():
