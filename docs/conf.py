@@ -23,6 +23,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "numpydoc",
     "audit",
+    "commands",
 ]
 exclude_patterns = ["build", "gallery/README.rst", "**/README.md"]
 source_suffix = {".rst": "restructuredtext", ".md": "markdown"}
@@ -57,7 +58,7 @@ html_show_sourcelink = False
 def _absolute_values(app, what, name, obj, options, lines):
     """|ξ| in a docstring is an absolute value, not a substitution."""
     for number, line in enumerate(lines):
-        if "|" in line and not line.lstrip().startswith(("+", "|", ">>>", "...")):
+        if "|" in line and not line.lstrip().startswith(("+", "| ", ">>>", "...")):
             parts = line.split("`")
             parts[::2] = [part.replace("|", r"\|") for part in parts[::2]]
             lines[number] = "`".join(parts)

@@ -138,8 +138,8 @@ class History:
     after it (``settled``), both of them equilibria without an overloaded bond or about to break
     one; where the load follows the crack, before every batch.
 
-    Columns
-    -------
+    Notes
+    -----
     load_factor
         Load factor λ.
     force

@@ -11,7 +11,13 @@ from cmverify.cases import registry
 from cmverify.cli import app
 
 ROOT = Path(__file__).parents[2]
-PAGES = ("README.md", "docs/python.md", "docs/results.md", "docs/howto/dashboards.md")
+PAGES = (
+    "README.md",
+    "docs/python.md",
+    "docs/results.md",
+    "docs/howto/dashboards.md",
+    "docs/howto/scene_files.md",
+)
 TEXT = "\n".join((ROOT / page).read_text() for page in PAGES)
 FIGURES = [
     (Path(page).parent / link)
@@ -80,3 +86,13 @@ def test_the_crack_of_the_readme_grows():
     run = names["run"]
     assert run.advance >= 6
     assert abs(run.history.imbalance).max() < 1e-6 * run.history.work.max()
+
+
+def test_the_scene_files_of_the_pages_are_read(tmp_path):
+    from cmverify.exchange.scene_file import request
+
+    found = blocks("toml")
+    assert found
+    for number, text in enumerate(found):
+        (tmp_path / f"{number}.toml").write_text(text)
+        request(tmp_path / f"{number}.toml")
