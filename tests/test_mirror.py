@@ -44,7 +44,6 @@ ELSEWHERE = {
     "cmverify/faults/trial.py": "tests/cmverify/faults/test_table.py",
     "cmverify/judge/norms.py": "tests/cmverify/judge/test_verdict.py",
     "cmverify/report/figures.py": "tests/cmverify/report/test_build.py",
-    "cmverify/report/picture.py": "tests/cmverify/report/test_build.py",
     "cmverify/report/stages.py": "tests/cmverify/report/test_build.py",
     "cmverify/report/style.py": "tests/cmverify/report/test_build.py",
     "cmverify/report/summary.py": "tests/cmverify/report/test_build.py",

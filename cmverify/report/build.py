@@ -83,7 +83,7 @@ def _drawn(
 ) -> list[tuple[list[Picture], list[str]]]:
     """Figures and exported fields of each case, in `jobs` processes if that pays."""
     if min(jobs, len(summary)) < 2:
-        return [_draw(result, folder) for result in summary]
+        return [(_draw(result, folder), _export(result, folder)) for result in summary]
     return _draw_in_processes(summary, folder, min(jobs, len(summary)))
 
 
@@ -98,14 +98,17 @@ def _draw_in_processes(
             jobs, mp_context=context, initializer=hold, initargs=(os.getpid(),)
         )
         try:
+            # By one of them: to write fields is quick, to load the solver that knows how is not.
+            writing = pool.submit(_export_all, bare, folder)
             drawn = list(pool.map(_draw, bare, [folder] * len(bare)))
+            written = writing.result()
         except BaseException:
             for child in multiprocessing.active_children():
                 child.kill()
             raise
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
-    return drawn
+    return list(zip(drawn, written, strict=True))
 
 
 def _without_functions(case: Case) -> Case:
@@ -117,12 +120,12 @@ def _not_here(resolution: int) -> Measurement:
     raise RuntimeError("a process that draws figures does not measure")
 
 
-def _draw(result: CaseResult, folder: Path) -> tuple[list[Picture], list[str]]:
-    """Figures of a case, written as files too, and the paths of its exported fields."""
+def _draw(result: CaseResult, folder: Path) -> list[Picture]:
+    """Figures of a case, written as files too."""
     pictures = _pictures(result, precision.points(result.case, result.outcomes))
     for picture in pictures:  # for papers and slides
         picture.save(folder / "figures" / f"{result.case.name}-{picture.name}")
-    return pictures, _export(result, folder)
+    return pictures
 
 
 def _section(
@@ -173,7 +176,7 @@ def _solvers(rows: Sequence[Row]) -> str:
 
 
 def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture]:
-    from cmverify.report import figures
+    from cmverify.report import figures, maps
     from cmverify.report.stages import stages_figure
 
     case, pictures = result.case, list[Picture]()
@@ -215,7 +218,7 @@ def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture
         assert fields is not None
         caption = f"{mathtext(item.label)}: {where}, particles that are not prescribed."
         alt = f"Maps of {key}: computed, reference and their difference; {where}."
-        figure = figures.field_panels(fields, item, case.length)
+        figure = maps.field_panels(fields, item, case.length)
         pictures.append(Picture.drawn(f"field-{key}", "png", figure, caption, alt, wide=True))
     stages = featured[finest].stages
     if stages is not None:
@@ -266,6 +269,10 @@ def _comparison(result: CaseResult, points: list[precision.Point]) -> list[dict[
         }
         for name in names
     ]
+
+
+def _export_all(summary: Sequence[CaseResult], folder: Path) -> list[list[str]]:
+    return [_export(result, folder) for result in summary]
 
 
 def _export(result: CaseResult, folder: Path) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import os
 from collections.abc import Callable, Sequence
 from importlib.resources import files
@@ -108,6 +107,4 @@ def _picture(name: str) -> Picture:
         ),
     }
     draw, caption = drawings[name]
-    stream = io.BytesIO()
-    draw().savefig(stream, format="svg", metadata={"Date": None})
-    return Picture(name, "svg", stream.getvalue(), caption, caption)
+    return Picture.drawn(name, "svg", draw(), caption, caption)

@@ -13,10 +13,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
-from matplotlib.tri import Triangulation
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
-from cmverify.case import Case, Field, FieldSet, LinePlot, Measurement
+from cmverify.case import Case, LinePlot, Measurement
 from cmverify.judge.convergence import fitted_order
 from cmverify.judge.precision import Point
 from cmverify.report import style
@@ -24,60 +23,6 @@ from cmverify.report.wording import tidy
 
 ROUNDING = 1e-12
 NARROW = (5.4, 3.9)
-
-
-def field_panels(fields: FieldSet, item: Field, length: str = "a") -> Figure:
-    """Computed and reference on one colour scale, their difference on its own.
-
-    A singular field is cut at its 0.5 and 99.5 percentiles; the colour bars' arrows say so.
-    """
-    with matplotlib.rc_context(style.RC):
-        figure = Figure(figsize=(10.4, 2.95))
-        low, high = np.nanpercentile(item.reference, [0.5, 99.5])
-        reach = np.nanpercentile(np.abs(item.difference), 99.5) or np.finfo(float).tiny
-        unit = "" if item.unit == "1" else f" ({item.unit})"
-        panels = (
-            ("computed", item.computed, "viridis", low, high),
-            ("reference", item.reference, "viridis", low, high),
-            ("computed − reference", item.difference, "RdBu_r", -reach, reach),
-        )
-        low_corner, high_corner = fields.points.min(axis=0), fields.points.max(axis=0)
-        middle = 0.5 * (low_corner + high_corner)
-        # Panels are square: the longer side of the body fills them.
-        edge = 0.52 * float((high_corner - low_corner).max())
-        # Laid out by hand: the panels of all fields align, and it is several times quicker.
-        for index, (title, values, cmap, bottom, top) in enumerate(panels):
-            left = 0.052 + index * 0.318
-            axis = figure.add_axes((left, 0.155, 0.225, 0.745))
-            image = _draw(axis, fields, values, cmap, bottom, top)
-            axis.set_title(title)
-            for side, centre in zip((axis.xaxis, axis.yaxis), middle, strict=True):
-                side.set_view_interval(centre - edge, centre + edge, ignore=True)
-                side.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
-            axis.set_aspect("equal")
-            axis.tick_params(labelleft=index == 0)
-            axis.set_xlabel(f"$x_1/{length}$", labelpad=1)
-            axis.grid(False)
-            extend = _extend(values, bottom, top)
-            box = figure.add_axes((left + 0.233, 0.155, 0.011, 0.745))
-            bar = figure.colorbar(image, cax=box, extend=extend)
-            bar.locator = MaxNLocator(5)
-            power = _power(max(abs(bottom), abs(top)))
-            bar.formatter = FuncFormatter(lambda v, _, p=power: f"{v / 10.0**p:.3g}")
-            delta = "Δ " if index == 2 else ""
-            factor = f"1e{power} " if power else ""
-            note = f" ({factor}{item.unit})" if power and item.unit != "1" else unit
-            bar.set_label(f"{delta}{item.label}{note}", labelpad=2)
-            bar.outline.set_visible(False)
-        figure.axes[0].set_ylabel(f"$x_2/{length}$", labelpad=0)
-        return figure
-
-
-def _power(size: float) -> int:
-    """Power of ten to take out of a colour bar's numbers; 0 for everyday sizes."""
-    if size == 0.0 or 0.05 <= size < 1000.0:
-        return 0
-    return int(np.floor(np.log10(size)))
 
 
 def line_plot(
@@ -226,6 +171,8 @@ def _decades(axis: Axis, unit: str = "") -> None:
     axis.set_major_locator(locator)
     axis.set_major_formatter(FuncFormatter(lambda v, _: _log_label(v, unit)))
     axis.set_minor_formatter(NullFormatter())
+    if high > 1e3 * low:  # nobody reads between so many
+        axis.set_minor_locator(NullLocator())
 
 
 #: What is labelled of a decade, in the order in which it is tried.
@@ -271,39 +218,6 @@ def _few_ticks(axis: Axes, points: Iterable[Point]) -> None:
     sizes = sorted({p.resolution for p in points}, reverse=True)
     axis.set_xticks([1.0 / n for n in sizes], [f"1/{n}" for n in sizes])
     axis.minorticks_off()
-
-
-def _draw(axis: Axes, fields: FieldSet, values: np.ndarray, cmap: str, low: float, high: float):  # type: ignore[no-untyped-def]
-    if fields.triangles is not None:
-        mesh = Triangulation(fields.points[:, 0], fields.points[:, 1], fields.triangles)
-        return axis.tripcolor(
-            mesh, values, cmap=cmap, vmin=low, vmax=high, shading="gouraud", rasterized=True
-        )
-    image, extent = as_image(fields.points, values, fields.spacing or 1.0)
-    return axis.imshow(
-        image, origin="lower", extent=extent, cmap=cmap, vmin=low, vmax=high,
-        interpolation="nearest",
-    )  # fmt: skip
-
-
-def as_image(
-    points: np.ndarray, values: np.ndarray, spacing: float
-) -> tuple[np.ndarray, tuple[float, float, float, float]]:
-    """Lattice values as an image (rows along x2, NaN where there is no particle) and its extent."""
-    origin = points.min(axis=0)
-    column, line = np.rint((points - origin) / spacing).astype(int).T
-    image = np.full((line.max() + 1, column.max() + 1), np.nan)
-    image[line, column] = values
-    left, bottom = origin - 0.5 * spacing
-    extent = (left, left + spacing * image.shape[1], bottom, bottom + spacing * image.shape[0])
-    return image, tuple(float(edge) for edge in extent)  # type: ignore[return-value]
-
-
-def _extend(values: np.ndarray, low: float, high: float) -> str:
-    """Arrows on a colour bar only where a part of the values lies visibly beyond it."""
-    slack = 0.02 * (high - low)
-    under, over = np.nanmin(values) < low - slack, np.nanmax(values) > high + slack
-    return {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}[int(under), int(over)]
 
 
 def lines_of(

@@ -44,6 +44,7 @@ def stages_figure(measurement: Measurement) -> Figure:
         finite = np.concatenate([v[np.isfinite(v)] for v in values])
         top = float(finite.max(initial=0.0)) or 1.0
         bottom = min(0.0, float(finite.min(initial=0.0)))
+        colours = matplotlib.colormaps["magma_r"].resampled(160)
         for number, (axis, stage) in enumerate(zip(axes[1:], stages.stages, strict=True), 1):
             axes[0].plot(*stage.at, "o", color="C3", markersize=5)
             axes[0].annotate(
@@ -52,7 +53,7 @@ def stages_figure(measurement: Measurement) -> Figure:
             image = np.full(shape[::-1], np.nan)
             image[columns[:, 1], columns[:, 0]] = stage.values
             axis.imshow(
-                image, origin="lower", extent=extent, cmap="magma_r", vmin=bottom, vmax=top,
+                image, origin="lower", extent=extent, cmap=colours, vmin=bottom, vmax=top,
                 interpolation="nearest",
             )  # fmt: skip
             axis.set_title(f"S.{number}: {stage.label}", fontsize=8)

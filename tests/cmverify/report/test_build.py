@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from cmverify.case import Failed
-from cmverify.report import figures, summary
+from cmverify.report import figures, maps, summary
 from cmverify.report.build import build
 from cmverify.run import results
 from tests.cmverify.toy_registry import toy, trapezium
@@ -100,7 +100,7 @@ def test_run_information_round_trips(tmp_path):
 
 def test_lattice_values_become_an_image():
     points = np.array([[0.05, 0.05], [0.15, 0.05], [0.05, 0.15]])
-    image, extent = figures.as_image(points, np.array([1.0, 2.0, 3.0]), 0.1)
+    image, extent = maps.as_image(points, np.array([1.0, 2.0, 3.0]), 0.1)
     np.testing.assert_array_equal(image, [[1.0, 2.0], [3.0, np.nan]])
     assert extent == pytest.approx((0.0, 0.2, 0.0, 0.2))
 
