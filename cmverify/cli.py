@@ -12,6 +12,7 @@ from typer.core import TyperGroup
 
 import cmverify
 from cmverify.case import Level
+from cmverify.console import console, manner, speak
 from cmverify.exchange.command import new, schema
 from cmverify.exchange.compare_command import compare, export
 from cmverify.faults.command import faults
@@ -41,12 +42,55 @@ class _Commands(TyperGroup):
 app = typer.Typer(
     cls=_Commands,
     no_args_is_help=True,
-    add_completion=False,
+    # Click's own help: a markup would swallow the brackets of [fracture] and 'cmverify[fenicsx]'.
+    rich_markup_mode=None,
     help="Verify and time continuum-molecular models of anisotropic solids.",
 )
 
-Names = Annotated[list[str] | None, typer.Argument(metavar="[CASE]...", help="Cases or tags.")]
+
+def _complete(incomplete: str) -> list[str]:
+    """Cases and tags that begin so, for the shell."""
+    from cmverify.cases import registry
+
+    cases = registry.all_cases()
+    known = {case.name for case in cases} | {tag for case in cases for tag in case.tags}
+    return sorted(name for name in known if name.startswith(incomplete))
+
+
+Names = Annotated[
+    list[str] | None,
+    typer.Argument(metavar="[CASE]...", help="Cases or tags.", autocompletion=_complete),
+]
 Folder = Annotated[Path, typer.Option("--out", help="Folder of the run and its report.")]
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from cmverify.run import environment
+
+        here = environment.describe()
+        commit = f" (commit {here.commit})" if here.commit else ""
+        typer.echo(f"cmverify {here.versions['cmverify']}{commit}, {here.python}")
+        raise typer.Exit(0)
+
+
+@app.callback()
+def _manners(
+    quiet: Annotated[
+        bool, typer.Option("-q", "--quiet", help="No progress, and only what fails.")
+    ] = False,
+    verbose: Annotated[
+        bool, typer.Option("-v", "--verbose", help="Every check, and what the solver remarks.")
+    ] = False,
+    version: Annotated[
+        bool,
+        typer.Option("--version", help="Show version and commit.", callback=_show_version,
+                     is_eager=True),
+    ] = False,
+) -> None:  # fmt: skip
+    if quiet and verbose:
+        _refuse("--quiet and --verbose: one of them")
+    speak(quiet, verbose)
 
 
 app.command()(compare)
@@ -59,13 +103,20 @@ app.command()(stability)
 
 
 @app.command("list")
-def list_cases(names: Names = None) -> None:
+def list_cases(
+    names: Names = None,
+    json: Annotated[bool, typer.Option("--json", help="Print them as JSON.")] = False,
+) -> None:
     """List cases with their tags and the spacings (a/n) of each level."""
-    from rich.console import Console
-
     from cmverify.report import terminal
 
-    Console().print(terminal.cases_table(_select(names)))
+    cases = _select(names)
+    if json:
+        from json import dumps
+
+        typer.echo(dumps(terminal.cases_as_data(cases), indent=1, ensure_ascii=False))
+    else:
+        terminal.print_cases(console(), cases)
 
 
 @app.command()
@@ -110,15 +161,13 @@ def _run(  # type: ignore[no-untyped-def]
     import time
     from dataclasses import replace
 
-    from rich.console import Console
-
     from cmverify.report import previous, summary, terminal
     from cmverify.run import environment, runner
     from cmverify.run.progress import LiveProgress
     from cmverify.run.threads import available_cores, threads_per_worker
 
     jobs = jobs or available_cores()
-    console = Console()
+    screen = console()
     started, clock = datetime.datetime.now().astimezone(), time.perf_counter()
     plan = runner.plan(cases, level)
     earlier = _earlier(out)
@@ -141,7 +190,7 @@ def _run(  # type: ignore[no-untyped-def]
         summary.save_info(info, out)
         if not resume:
             previous.set_aside(out)
-        with LiveProgress(console, len(plan)) as live:
+        with LiveProgress(screen, len(plan), {c.name: c.length for c in cases}) as live:
             records = runner.run(
                 cases, level, out, jobs=jobs, resume=resume, timeout=timeout, listen=live.listen
             )
@@ -153,8 +202,8 @@ def _run(  # type: ignore[no-untyped-def]
     except OSError as error:
         _interrupted(f"{error.strerror or error}; what is finished is kept; {go_on}")
     judged = summary.summarise(cases, records, info)
-    terminal.print_verdicts(console, judged)
-    _write(_beside(judged, info, out, console), info, out, json, console)
+    terminal.print_verdicts(screen, judged)
+    _write(_beside(judged, info, out, screen), info, out, json, screen)
     raise typer.Exit(0 if summary.all_passed(judged) else 1)
 
 
@@ -174,21 +223,19 @@ def report(
 
         typer.echo(dumps(numbers.schema(), indent=1))
         raise typer.Exit(0)
-    from rich.console import Console
-
     from cmverify.report import summary, terminal
     from cmverify.run import folder
 
     judged, info = _finished(out)
-    console = Console()
-    judged = _beside(judged, info, out, console)
+    screen = console()
+    judged = _beside(judged, info, out, screen)
     try:
         folder.check_file(out / "results.json")
         folder.check_file(json or out / "results.json")
     except folder.FolderError as error:
         _refuse(str(error))
-    terminal.print_missing(console, judged)
-    _write(judged, info, out, json, console)
+    terminal.print_missing(screen, judged)
+    _write(judged, info, out, json, screen)
     raise typer.Exit(0 if summary.all_passed(judged) else 1)
 
 
@@ -199,22 +246,23 @@ def precision(
     out: Folder = Path("report"),
 ) -> None:
     """Show error against time of a finished run; ★ marks what nothing else beats."""
-    from rich.console import Console
-
     from cmverify.report import terminal
 
     judged, info = _finished(out)
     wanted = {case.name for case in _select(names)}
-    console = Console()
+    screen = console()
     shown = 0
     for result in judged:
         timed = quantity is None or quantity in result.case.quantities
         if result.case.name in wanted and timed and result.case.timed:
-            console.print(terminal.precision_table(result, quantity), "")
+            terminal.print_precision(screen, result, quantity)
+            screen.print()
             shown += 1
     if not shown:
         _refuse(f"{out} has no timed case of that name or quantity")
-    console.print(f"Level {info.level}, {info.jobs} × {info.threads} threads. {info.command}")
+    screen.print(
+        f"Level {info.level}, {info.jobs} × {info.threads} threads. {info.command}", soft_wrap=True
+    )
 
 
 @app.command()
@@ -227,8 +275,6 @@ def errata(
     page: Annotated[Path | None, typer.Option(help="Write everything as an HTML page.")] = None,
 ) -> None:
     """Judge the paper's equations and numbers, and prove each judgement."""
-    from rich.console import Console
-
     from cmverify import errata as audit
     from references import errata as paper
 
@@ -247,26 +293,23 @@ def errata(
         typer.echo(f"{page}")
         raise typer.Exit(1 if failed else 0)
     if number is not None:
-        raise typer.Exit(0 if audit.print_one(Console(), number) else 1)
-    raise typer.Exit(0 if audit.print_errata(Console(), not every) else 1)
+        raise typer.Exit(0 if audit.print_one(console(), number) else 1)
+    raise typer.Exit(0 if audit.print_errata(console(), not every) else 1)
 
 
 @app.command()
 def doctor() -> None:
     """Say whether everything that a run needs is here. Exit code 1 if something is missing."""
-    from rich.console import Console
-    from rich.markup import escape
-    from rich.table import Table
+    from rich.text import Text
 
+    from cmverify.console import columns, show
     from cmverify.doctor import examine
 
-    view = Table(box=None, show_header=False, pad_edge=False)
-    states = set()
-    marks = {"ok": "[green]ok[/]", "note": "[yellow]note[/]", "problem": "[red]problem[/]"}
-    for finding in examine():
-        states.add(finding.state)
-        view.add_row(marks[finding.state], escape(finding.subject), escape(finding.detail))
-    Console().print(view)
+    colours = {"ok": "green", "note": "yellow", "problem": "red"}
+    found = list(examine())
+    rows = [(Text(f.state, style=colours[f.state]), f.subject, f.detail) for f in found]
+    show(console(), columns("state", "of", "what was found", prose=("what was found",)), rows)
+    states = {finding.state for finding in found}
     raise typer.Exit(1 if "problem" in states else 0)
 
 
@@ -287,15 +330,15 @@ def solve(
     ] = False,
 ) -> None:
     """Do what a scene file asks for, and write its fields as .vtu and .npz."""
-    from rich.console import Console
-    from rich.markup import escape
+
+    from rich.text import Text
 
     from cmverify.exchange import scene_file
     from cmverify.exchange.export import check_writable
     from cmverify.exchange.output import existing
     from cmverify.run.progress import share_done
 
-    console = Console()
+    screen = console()
     base = out or scene.with_suffix("")
     try:
         if out is not None and out.is_dir():
@@ -309,7 +352,7 @@ def solve(
             max_minutes * 60,
         )
         check_writable(base)
-        with share_done(console, request.analysis) as tell:
+        with share_done(screen, request.analysis) as tell:
             result = request.run(tell)
         said, paths = result.summary(), result.write(base)
     except ValueError as error:
@@ -323,10 +366,11 @@ def solve(
         )
     warnings = said.pop("warnings", ())
     for name, value in said.items():
-        console.print(f"{name.replace('_', ' '):<16}{_plain(value)}", highlight=False)
+        screen.print(f"{name.replace('_', ' '):<16}{_plain(value)}", soft_wrap=True)
     for warning in warnings:
-        console.print(f"[yellow]warning[/]         {escape(warning)}")
-    console.print("wrote", *map(str, paths))
+        line = Text("warning         ", style="yellow").append(warning, style="default")
+        screen.print(line, soft_wrap=True)
+    screen.print("wrote", *map(str, paths), soft_wrap=True)
 
 
 def _plain(value: object) -> str:
@@ -383,7 +427,7 @@ def _earlier(out: Path):  # type: ignore[no-untyped-def]
         return None
 
 
-def _beside(own, info, out: Path, console):  # type: ignore[no-untyped-def]
+def _beside(own, info, out: Path, screen):  # type: ignore[no-untyped-def]
     """A run's results with those that its folder keeps of earlier ones; says how they stand."""
     from cmverify.cases import registry
     from cmverify.report import summary
@@ -391,22 +435,18 @@ def _beside(own, info, out: Path, console):  # type: ignore[no-untyped-def]
 
     cases = registry.all_cases()
     if lost := summary.forgotten(cases, info):
-        console.print(
-            f"Not known any more, and left out: {', '.join(lost)}", markup=False, soft_wrap=True
-        )
+        screen.print(f"Not known any more, and left out: {', '.join(lost)}", soft_wrap=True)
     judged = summary.beside(cases, own, info, out)
     kept = len(judged) - len(own)
     if kept:
         bad = [r.case.name for r in judged if r.run is not info and not r.passed]
         state = f"of which fail: {', '.join(bad)}" if bad else "all of which hold"
         said = counted(kept, "case is", "cases are")
-        console.print(
-            f"{said} kept from earlier runs in {out}, {state}.", markup=False, soft_wrap=True
-        )
+        screen.print(f"{said} kept from earlier runs in {out}, {state}.", soft_wrap=True)
     return judged
 
 
-def _write(judged, info, out: Path, json: Path | None, console) -> None:  # type: ignore[no-untyped-def]
+def _write(judged, info, out: Path, json: Path | None, screen) -> None:  # type: ignore[no-untyped-def]
     from cmverify.report import summary
     from cmverify.report.build import build
     from cmverify.run import results
@@ -421,7 +461,11 @@ def _write(judged, info, out: Path, json: Path | None, console) -> None:  # type
         _interrupted(again)
     except OSError as error:
         _interrupted(f"the report cannot be written ({error.strerror or error}): {again}")
-    console.print(f"Report: {page}  (numbers: {out / 'results.json'}, fields: {out / 'fields'})")
+    if not manner().quiet:
+        screen.print(
+            f"Report: {page}  (numbers: {out / 'results.json'}, fields: {out / 'fields'})",
+            soft_wrap=True,
+        )
 
 
 def _command(names: list[str] | None, level: Level, jobs: int, out: Path) -> str:

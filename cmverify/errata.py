@@ -101,32 +101,32 @@ def print_errata(console: Console, differing_only: bool = True) -> bool:
     differing_only : bool
         Leave out what is right as printed or cannot be judged (proved and counted all the same).
     """
-    from rich.markup import escape
     from rich.table import Table
+    from rich.text import Text
 
+    from cmverify.console import mark
     from references.errata import entries
 
     view = Table(header_style="bold", show_lines=True, pad_edge=False)
     for column in ("Eq.", "verdict", "printed", "as it should be", "effect", "proof"):
-        view.add_column(column, overflow="fold")
+        view.add_column(column, overflow="fold", no_wrap=column in ("Eq.", "verdict"))
     with console.status("proving"):
         judged = [judge(entry) for entry in entries()]
     for item in judged:
         if item.differs or item.failed or not differing_only:
-            mark = {"holds": "[green]✓[/]", "none": "–"}.get(item.proof)
-            texts = (item.number, item.verdict, item.printed, item.derived)
+            signs = {"holds": mark(True), "none": Text("–")}
             view.add_row(
-                *(escape(text) for text in texts),
-                escape(item.effect or item.needs),
-                mark or f"[red]✗ {escape(item.proof)}[/]",
-            )
+                item.number, item.verdict, item.printed, item.derived, item.effect or item.needs,
+                signs.get(item.proof) or Text(f"✗ {item.proof}", style="red"),
+            )  # fmt: skip
     console.print(view)
     failed, proved = sum(j.failed for j in judged), sum(j.proof != "none" for j in judged)
     others = [j for j in judged if not j.equation]
     console.print(
         f"{coverage_line(judged)} Beside them {len(others)} numbers and statements, "
         f"{sum(j.differs for j in others)} of which differ. {proved - failed} of {proved} proofs "
-        "hold."
+        "hold.",
+        soft_wrap=True,
     )
     return not failed
 
@@ -139,20 +139,18 @@ def print_one(console: Console, number: str) -> bool:
     KeyError
         If nothing of that name is judged.
     """
-    from rich.markup import escape
-
     from references.errata import entry
 
     item = judge(entry(number))
     head = f"Eq. {item.number}" if item.equation else item.number
-    console.print(f"[bold]{escape(head)}[/]: {escape(item.title)}: [bold]{item.verdict}[/]")
+    console.print(f"{head}: {item.title}: {item.verdict}", style="bold", soft_wrap=True)
     lines = [("printed", item.printed), ("should be", item.derived), ("derived from", item.how)]
     lines += [("read as", reading) for reading in item.readings]
     lines += [("effect", item.effect), ("needed", item.needs), ("proof", item.proof)]
     lines += [("test", item.test)]
     for label, text in lines:
         if text:
-            console.print(f"  {label:13s}{escape(text)}", soft_wrap=True, highlight=False)
+            console.print(f"  {label:13s}{text}", soft_wrap=True)
     return not item.failed
 
 

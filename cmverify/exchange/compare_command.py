@@ -31,20 +31,19 @@ def export(
 
     case.json says what each file holds. Solve it with what you have, then: cmverify compare.
     """
-    from rich.console import Console
-    from rich.table import Table
-
     from cmverify.cases import registry
+    from cmverify.console import columns, console, show
     from cmverify.exchange.case_export import pose_of, write_case
     from cmverify.exchange.compare import resolution_of
 
-    console = Console()
+    screen = console()
     if name is None:
-        view = Table("case", "problems", "title", box=None, header_style="bold", pad_edge=False)
-        for case in registry.all_cases():
-            if case.poses:
-                view.add_row(case.name, ", ".join(p.name for p in case.poses if p.name), case.title)
-        console.print(view)
+        rows = [
+            (case.name, ", ".join(p.name for p in case.poses if p.name), case.title)
+            for case in registry.all_cases()
+            if case.poses
+        ]
+        show(screen, columns("case", "problems", "title", prose=("problems", "title")), rows)
         return
     try:
         case = registry.get(name)
@@ -55,7 +54,7 @@ def export(
         _refuse(str(error))
     except OSError as error:
         _refuse(f"{out or name} cannot be written: {error.strerror or error}")
-    console.print("wrote", *map(str, paths))
+    screen.print("wrote", *map(str, paths), soft_wrap=True)
 
 
 def compare(
@@ -81,9 +80,8 @@ def compare(
 
     Exit code 0 only if every bound holds.
     """
-    from rich.console import Console
-
     from cmverify.cases import registry
+    from cmverify.console import console
     from cmverify.exchange import answers as reading
     from cmverify.exchange import compare as judging
     from cmverify.exchange.case_export import pose_of
@@ -102,18 +100,18 @@ def compare(
     except ValueError as error:
         _refuse(str(error))
     judged = summary.summarise([found.case], found.records)
-    console = Console()
-    terminal.print_verdicts(console, judged)
+    screen = console()
+    terminal.print_verdicts(screen, judged)
     for line in terminal.order_lines(judged):
-        console.print(line, highlight=False, markup=False, soft_wrap=True)
+        screen.print(line, soft_wrap=True)
     for answer, quantities in found.absent.items():
         if quantities:
-            console.print(f"{answer} says nothing about: {', '.join(quantities)}", highlight=False)
+            screen.print(f"{answer} says nothing about: {', '.join(quantities)}", soft_wrap=True)
     try:
         page = _report(judged, _info(case.name, answers, problem, level, n, ours, out), out)
     except OSError as error:
         _refuse(f"the page cannot be written to {out}: {error.strerror or error}")
-    console.print(f"Page: {page}  (numbers: {out / 'results.json'})")
+    screen.print(f"Page: {page}  (numbers: {out / 'results.json'})", soft_wrap=True)
     raise typer.Exit(0 if summary.all_passed(judged) else 1)
 
 

@@ -29,8 +29,7 @@ def faults(
 
     Exit code 0 only if every fault is caught by a case, or argued to be harmless.
     """
-    from rich.console import Console
-
+    from cmverify.console import console
     from cmverify.faults import page, registry, table
     from cmverify.run.threads import available_cores
 
@@ -46,8 +45,8 @@ def faults(
         )
         raise typer.Exit(2)
     chosen = [f for f in known if not wanted or f.name in wanted or f.kind in wanted]
-    console = Console()
-    with console.status("") as status:
+    screen = console()
+    with screen.status("") as status:
         results = table.attempt(
             chosen,
             {} if every or remember else table.read_map(),
@@ -58,29 +57,28 @@ def faults(
     if remember:
         table.write_map(results)
     path = page.write(results, _command(names, every, out), out)
-    _print(console, results)
-    console.print(f"Page: {path}")
+    _print(screen, results)
+    screen.print(f"Page: {path}", soft_wrap=True)
     raise typer.Exit(0 if all(r.good for r in results) else 1)
 
 
-def _print(console, results: list[Result]) -> None:  # type: ignore[no-untyped-def]
-    from rich.markup import escape
-    from rich.table import Table
+def _print(screen, results: list[Result]) -> None:  # type: ignore[no-untyped-def]
+    from cmverify.console import columns, mark, show
 
-    view = Table(box=None, header_style="bold", pad_edge=False)
-    for column in ("", "fault", "kind", "state", "caught by"):
-        view.add_column(column)
-    for r in results:
-        mark = "[green]✓[/]" if r.catching else "[yellow]–[/]" if r.good else "[red]✗[/]"
-        view.add_row(mark, escape(r.fault.name), r.fault.kind, r.state, escape(_who(r)))
-    console.print(view)
+    rows = [
+        (mark(True if r.catching else None if r.good else False), r.fault.name, r.fault.kind,
+         r.state, _who(r))
+        for r in results
+    ]  # fmt: skip
+    head = columns("", "fault", "kind", "state", "caught by", prose=("fault", "caught by"))
+    show(screen, head, rows, keys=2)
     caught = sum(bool(r.catching) for r in results)
     argued = sum(r.good and not r.catching for r in results)
     colour = "green" if all(r.good for r in results) else "red"
-    console.print(
-        f"[bold {colour}]{caught} of {len(results)} faults are caught, {argued} more are argued "
-        f"to be harmless.[/]"
-    )
+    screen.print(
+        f"{caught} of {len(results)} faults are caught, {argued} more are argued to be harmless.",
+        style=f"bold {colour}", soft_wrap=True,
+    )  # fmt: skip
 
 
 def _who(result: Result) -> str:

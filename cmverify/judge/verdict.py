@@ -156,8 +156,15 @@ def _bound(case: Case, check: Check, where: tuple[int, ...], errors: list[float]
     passed = 0.0 <= value <= bound if check.exact else least < value <= bound
     return Verdict(
         case.name, check.method, check.quantity, "bound", f"{case.length}/{n}", value,
-        asked, passed, message, value / bound,
+        asked, passed, message, _share(value, bound),
     )  # fmt: skip
+
+
+def _share(value: float, bound: float) -> float:
+    """Of a bound that is used up; a bound of zero has none but for what is zero."""
+    if bound == 0.0:
+        return 0.0 if value == 0.0 else math.inf if value > 0.0 else math.nan
+    return value / bound
 
 
 def _equal(case: Case, check: Check, where: tuple[int, ...], errors: list[float]) -> Verdict:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from types import TracebackType
 
 from rich.console import Console
-from rich.markup import escape
 from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
@@ -19,7 +18,9 @@ from rich.progress import (
     TimeElapsedColumn,
     TimeRemainingColumn,
 )
+from rich.text import Text
 
+from cmverify.console import manner
 from cmverify.run.runner import Event, Task
 
 
@@ -32,7 +33,7 @@ def share_done(console: Console, label: str) -> Iterator[Callable[[float], None]
     """
     bars = Progress(
         SpinnerColumn(),
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(bar_width=24),
         TaskProgressColumn(),
         TimeRemainingColumn(),
@@ -40,7 +41,7 @@ def share_done(console: Console, label: str) -> Iterator[Callable[[float], None]
         transient=True,
         disable=not console.is_terminal,
     )
-    task = bars.add_task(escape(label), total=None)
+    task = bars.add_task(label, total=None)
     furthest = 0.0
 
     def tell(done: float) -> None:
@@ -59,14 +60,17 @@ class LiveProgress:
     bar, also where the output is a file.
     """
 
-    def __init__(self, console: Console, total: int) -> None:
+    def __init__(self, console: Console, total: int, lengths: Mapping[str, str] = {}) -> None:
+        """`lengths` of cases by name are what their resolutions divide."""
         self._console = console
+        self._lengths = lengths
         self._bars = Progress(
             SpinnerColumn(),
-            TextColumn("{task.description}"),
+            TextColumn("{task.description}", markup=False),
             BarColumn(bar_width=24),
             MofNCompleteColumn(),
             TimeElapsedColumn(),
+            TimeRemainingColumn(),
             console=console,
             transient=True,
             disable=not console.is_terminal,
@@ -89,16 +93,22 @@ class LiveProgress:
     def listen(self, event: Event) -> None:
         """Show an event of the runner."""
         name, method, n = event.task
-        label = f"{name}  {method}  1/{n}"
+        label = f"{name}  {method}  {self._lengths.get(name, '1')}/{n}"
         if event.kind == "started":
-            self._running[event.task] = self._bars.add_task(f"[dim]{label}", total=None)
+            self._running[event.task] = self._bars.add_task(label, total=None)
             return
         if event.task in self._running:
             self._bars.remove_task(self._running.pop(event.task))
         self._bars.advance(self._whole)
         if event.kind == "failed":
-            self._console.print(f"[red]failed  [/] {label}  [red]{escape(str(event.message))}[/]")
+            self._say("failed  ", "red", f"{label}  {event.message}")
+        elif manner().quiet:
+            return
         elif event.kind == "reused":
-            self._console.print(f"[dim]reused   {label}[/]")
+            self._say("reused  ", "dim", label)
         else:
-            self._console.print(f"[green]done    [/] {label:<44}{event.seconds:7.2f} s")
+            self._say("done    ", "green", f"{label:<48}{event.seconds:7.2f} s")
+
+    def _say(self, state: str, style: str, text: str) -> None:
+        line = Text(f"{state} ", style=style).append(text, style="default")
+        self._console.print(line, soft_wrap=True)

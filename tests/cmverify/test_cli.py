@@ -108,9 +108,35 @@ def test_solve_writes_fields_and_names_a_wrong_key(tmp_path):
 
 
 def test_list_names_every_case():
-    found = cli.invoke(app, ["list"], terminal_width=200)
+    found = cli.invoke(app, ["list"])
     assert found.exit_code == 0
-    assert all(case.name[:8] in found.output for case in registry.all_cases())
+    listed = [line.split()[0] for line in found.output.splitlines()[1:]]
+    assert listed == [case.name for case in registry.all_cases()]
+    found = cli.invoke(app, ["list", "--json", "disc"])
+    data = json.loads(found.output)
+    assert [case["name"] for case in data] == [c.name for c in registry.select(["disc"])]
+    assert data[0]["methods"]["fem/P1"]["quick"] == [25, 50]
+
+
+def test_version_and_manners(toys, tmp_path):
+    found = cli.invoke(app, ["--version"])
+    assert found.exit_code == 0
+    assert found.output.startswith("cmverify ")
+    assert cli.invoke(app, ["-q", "-v", "list"]).exit_code == 2
+    out = tmp_path / "a[/b]"  # a path that a markup would choke on
+    given = ["run", "toy", "--jobs", "1", "--out", str(out)]
+    loud = cli.invoke(app, ["-v", *given])
+    assert loud.exit_code == 0, loud.output
+    assert str(out / "index.html") in loud.output
+    assert sum("integral" in line for line in loud.output.splitlines()) == 3
+    quiet = cli.invoke(app, ["-q", *given, "--resume"])
+    assert quiet.output == "All 3 checks of 1 case hold.\n"
+
+
+def test_shells_complete_cases_and_tags():
+    from cmverify.cli import _complete
+
+    assert _complete("crack-t") == ["crack-tip", "crack-tip-I", "crack-tip-II"]
 
 
 def test_help_and_list_import_nothing_heavy():

@@ -33,13 +33,12 @@ def speed(
     Ratios are judged from level standard on (a/120) and want a quiet machine; exit code 1 if a
     bound is missed.
     """
-    from rich.console import Console
-
+    from cmverify.console import console
     from cmverify.judge.verdict import Verdict
     from cmverify.run.environment import describe
     from cmverify.studies.speed import measure, modes, verdicts
 
-    console = Console()
+    screen = console()
     resolution = _RESOLUTION[level]
     tables: dict[str, list[Any]] = {}
     found: list[Verdict] = []
@@ -69,12 +68,12 @@ def speed(
     )
     for title, run, judge in studies:
         # No spinner: its thread would take its share of what is measured.
-        console.print(f"{title} …")
+        screen.print(f"{title} …")
         rows = run()
-        console.print(_table(title, rows))
+        _show(screen, title, rows)
         tables[title] = [row.as_dict() for row in rows]
         found += judge(rows) if judge else []
-    console.print(_verdict_table(found))
+    _show_verdicts(screen, found)
     out.mkdir(parents=True, exist_ok=True)
     document = {
         "machine": describe().as_dict(),
@@ -87,33 +86,25 @@ def speed(
     from cmverify.studies.speed.figure import draw
 
     draw(tables, out / "speed.png")
-    console.print(f"Figure: {out / 'speed.png'}  (numbers: {out / 'speed.json'})")
+    screen.print(f"Figure: {out / 'speed.png'}  (numbers: {out / 'speed.json'})", soft_wrap=True)
     raise typer.Exit(0 if all(v.passed for v in found) else 1)
 
 
-def _table(title: str, rows: list[Any]) -> Any:
-    from rich.table import Table
+def _show(screen: Any, title: str, rows: list[Any]) -> None:
+    """One study: a line a row, columns in the order in which the rows name them."""
+    from cmverify.console import columns, show
 
-    view = Table(title=title, box=None, header_style="bold", title_justify="left")
-    view.add_column("")
-    columns = list(rows[0].values)
-    for row in rows[1:]:
-        columns += [name for name in row.values if name not in columns]
-    for name in columns:
-        view.add_column(name, justify="right")
+    names = list(dict.fromkeys(name for row in rows for name in row.values))
+    lines = []
     for row in rows:
-        cells = [row.values.get(name, "") for name in columns]
-        view.add_row(row.name, *(f"{c:.3g}" if isinstance(c, float) else str(c) for c in cells))
-    return view
+        cells = [row.values.get(name, "") for name in names]
+        lines.append([row.name, *(f"{c:.3g}" if isinstance(c, float) else str(c) for c in cells)])
+    show(screen, columns("", *names, right=names), lines, title=title)
 
 
-def _verdict_table(found: list[Any]) -> Any:
-    from rich.table import Table
+def _show_verdicts(screen: Any, found: list[Any]) -> None:
+    from cmverify.console import columns, mark, show
 
-    view = Table(box=None, header_style="bold")
-    for column in ("", "what", "measured", "asked"):
-        view.add_column(column, justify="right" if column == "measured" else "left")
-    for v in found:
-        mark = "[green]✓[/]" if v.passed else "[red]✗[/]"
-        view.add_row(mark, f"{v.method}: {v.quantity}", f"{v.value:.3g}", v.asked)
-    return view
+    rows = [(mark(v.passed), f"{v.method}: {v.quantity}", f"{v.value:.3g}", v.asked) for v in found]
+    head = columns("", "what", "measured", "asked", right=("measured",), prose=("what",))
+    show(screen, head, rows, keys=2)

@@ -62,13 +62,12 @@ def stability(
     With --material: verdicts and polar plots of these solids, and only the studies asked for.
     Exit code 1 if a verdict is not confirmed by bond energies or linear programming.
     """
-    from rich.console import Console
-
     from cmverify.cases.common import materials
+    from cmverify.console import console
     from cmverify.studies.stability import page
     from cmverify.studies.stability.assessments import compare
 
-    console = Console()
+    screen = console()
     try:
         solids = {name: materials.named(name) for name in material} if material else _suite()
         verdicts = [
@@ -79,12 +78,12 @@ def stability(
     except ValueError as error:
         typer.secho(f"error: {error}", fg=typer.colors.RED, err=True)
         raise typer.Exit(2) from error
-    _print(console, verdicts)
+    _print(screen, verdicts)
     chosen = study or ([] if material else list(Study))
     fine = level == Fineness.STANDARD
     sections = []
     for one in chosen:
-        with console.status(f"mapping: {one.value}"):
+        with screen.status(f"mapping: {one.value}"):
             sections.append(_section(one, fine))
     if material:
         sections.append(_polar({k: v for k, v in solids.items() if v.shape == (3, 3)}, m))
@@ -93,12 +92,9 @@ def stability(
     parts.append(f"--m {m:g} --area-rule {area_rule} --level {level} --out {out}")
     path = page.write(verdicts, sections, " ".join(parts), out)
     good = page.all_confirmed(verdicts)
-    console.print(
-        "[bold green]Every verdict is confirmed.[/]"
-        if good
-        else "[bold red]Some verdicts are not confirmed.[/]"
-    )
-    console.print(f"Page: {path}")
+    said = "Every verdict is confirmed." if good else "Some verdicts are not confirmed."
+    screen.print(said, style="bold green" if good else "bold red")
+    screen.print(f"Page: {path}", soft_wrap=True)
     raise typer.Exit(0 if good else 1)
 
 
@@ -122,26 +118,25 @@ def _suite() -> dict[str, Array]:
     }  # fmt: skip
 
 
-def _print(console, verdicts: list[Assessment]) -> None:  # type: ignore[no-untyped-def]
-    from rich.table import Table
+def _print(screen, verdicts: list[Assessment]) -> None:  # type: ignore[no-untyped-def]
+    from rich.text import Text
 
-    view = Table(box=None, header_style="bold", pad_edge=False)
-    for column in ("", "solid", "calibration", "law"):
-        view.add_column(column)
-    for column in ("m", "margin", "lowest", "highest"):
-        view.add_column(column, justify="right")
-    view.add_column("verdict")
+    from cmverify.console import columns, mark, show
+
+    numbers = ("m", "margin", "lowest", "highest")
+    rows: list[tuple[str | Text, ...]] = []
     for v in verdicts:
-        mark = {True: "[green]✓[/]", False: "[red]✗[/]", None: "–"}[v.confirmed]
         colour = "green" if v.stable else "red" if v.kind == "inadmissible" else "yellow"
-        numbers = [
+        values = [
             "–" if value != value else f"{value:.3g}" for value in (v.margin, v.lowest, v.highest)
         ]
-        view.add_row(
-            mark, v.solid, v.calibration, v.law or "default", f"{v.m:g}", *numbers,
-            f"[{colour}]{v.kind}[/]" + (", bonds ≥ 0" if v.non_negative else ""),
+        verdict = Text(v.kind, style=colour).append(", bonds ≥ 0" if v.non_negative else "")
+        rows.append(
+            (mark(v.confirmed), v.solid, v.calibration, verdict, f"{v.m:g}", *values,
+             v.law or "default")
         )  # fmt: skip
-    console.print(view)
+    head = columns("", "solid", "calibration", "verdict", *numbers, "law", right=numbers)
+    show(screen, head, rows, keys=3)
 
 
 def _section(study: Study, fine: bool) -> Section:

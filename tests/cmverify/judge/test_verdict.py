@@ -214,3 +214,12 @@ def test_the_worst_of_errors_is_not_a_number_if_one_is():
         assert math.isnan(worst(errors))
     with pytest.raises(ValueError, match="zero-size"):
         worst([])
+
+
+def test_a_bound_of_zero_is_judged():
+    """What must not be at all: nothing of it holds, anything of it fails and divides nothing."""
+    checks = (Check("bond/trapezium", "integral", {10: 0.0}, exact=True),)
+    for error, held in ((0.0, True), (1e-300, False), (math.nan, False)):
+        found = replace(trapezium(10), quantities={"integral": error})
+        verdicts = judge(toy(checks=checks), {"bond/trapezium": {10: found}})
+        assert [v.passed for v in verdicts if v.kind == "bound"] == [held]
