@@ -23,6 +23,7 @@ from .stepping import (
     Newmark,
     Verlet,
     largest_frequency,
+    require_end,
     stable_step,
 )
 
@@ -144,6 +145,7 @@ class Motion:
                 f"{self.stable:.6g} s: take a shorter one, or scheme='newmark'"
             )
         whole = settings.end - settings.start
+        require_end(whole, step)
         self.count = max(1, int(np.ceil(whole / step * (1 - 1e-9))))
         self.step = whole / self.count
         if verlet:

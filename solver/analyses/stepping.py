@@ -16,6 +16,7 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from ..arrays import Array, Mask
+from ..errors import SceneError
 from ..linear.shifted import Shifted
 from ..operators import BondOperator
 
@@ -24,6 +25,8 @@ ROTATIONAL_INERTIA = 1.0 / 6.0
 # Accuracy of the largest eigenvalue, and what is added to it for being a lower bound.
 _LANCZOS = 5e-3
 _ABOVE = 5e-3
+# Steps that no run comes to the end of.
+_MOST = 1e9
 
 
 class Internal(Protocol):
@@ -81,6 +84,20 @@ def largest_frequency(internal: Internal, inverse_mass: Array) -> float:
         scaled, k=1, which="LA", v0=start, tol=_LANCZOS, ncv=20, return_eigenvectors=False
     )
     return float(np.sqrt(value * (1.0 + _ABOVE)))
+
+
+def require_end(span: float, step: float) -> None:
+    """Refuse a run that would never end.
+
+    Raises
+    ------
+    SceneError
+    """
+    if span > _MOST * step:
+        raise SceneError(
+            f"a run of {span:.3g} s in steps of {step:.3g} s has {span / step:.1e} of them and "
+            f"would not end: are moduli, masses, lengths and times in units that belong together?"
+        )
 
 
 def stable_step(frequency: float, alpha: float = 0.0, beta: float = 0.0) -> float:

@@ -47,6 +47,7 @@ from .recording import (
     nearest,
 )
 from .registry import Analysis
+from .stepping import require_end
 
 _GAMMA = 2.0 - np.sqrt(2.0)
 _D = 0.5 * _GAMMA
@@ -220,6 +221,8 @@ def run(
     if step is not None and not 0 < step < np.inf:
         raise SceneError(f"the step must be a positive time, not {step}")
     wanted = checked_times(times, start)
+    if step is not None:
+        require_end(float(wanted[-1]) - start, step)
     body = Discretisation.of(scene.at(start), free=True)
     marching = _March(body, scene, initial, wanted, start, tolerance, step)
     marching.record(probes, series, checkpoint, every)

@@ -8,7 +8,7 @@ from .lattice import Lattice, select
 from .outline import Outline
 from .phases import Phases
 from .regions import Crack, Point, Region, Where, disc, polygon, rectangle
-from .spread import on_edges, on_particles
+from .spread import on_edges, on_nearest, on_particles
 from .strips import volumes
 
 __all__ = [
@@ -25,6 +25,7 @@ __all__ = [
     "Where",
     "disc",
     "on_edges",
+    "on_nearest",
     "on_particles",
     "polygon",
     "rectangle",

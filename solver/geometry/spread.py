@@ -25,9 +25,13 @@ from .regions import Crack
 
 # Cells within which particles carry a point, and those tried where too few see it.
 _REACH, _FURTHER = 1.6, 3.0
+# In a cusp, where particles may lie in a row.
+_FURTHEST = 8.0
 # Cells by which a point may lie off the body, or off the edge that it is meant for: chords of
 # curved edges do.
 _OFF = 0.1
+# Cells within which an edge has a particle beside it.
+_BESIDE = 1.25
 # Distance (cells) that no longer counts: a point so near is at the particle.
 _AT = 1e-3
 
@@ -75,7 +79,7 @@ def on_particles(
             near = np.array(sorted(tree.query_ball_point(point, reach * spacing)), dtype=np.int64)
             near = near[seen(point, lattice.points[near])]
             away = (lattice.points[near] - point) / spacing
-            if len(near) and np.linalg.matrix_rank(np.c_[np.ones(len(near)), away], 1e-6) == 3:
+            if _spans(away):
                 break
         if not len(near):
             x, y = point + lattice.shift
@@ -83,12 +87,59 @@ def on_particles(
                 f"a load acts at ({x:.6g}, {y:.6g}), where no particle sees it: outside of the "
                 f"body, or on a crack (say which face by a place beside it)"
             )
-        moments = np.vstack([np.ones(len(near)), away.T])
-        size = 1.0 / ((away**2).sum(axis=1) + _AT**2)
-        # Few particles in a row have no moment across it: then the least squares of it.
-        root = moments * size
-        share = size * (np.linalg.pinv(root, rcond=1e-12) @ np.array([1.0, 0.0, 0.0]))
-        found.append((place, near, share / share.sum()))
+        found.append((place, near, _shares(away)))
+    return _listed(found)
+
+
+def on_nearest(tree: KDTree, points: Array, spacing: float) -> tuple[Indices, Indices, Array]:
+    """As `on_particles`, of points on edges: the nearest particle alone, if one is near.
+
+    In a cusp none is: those about the nearest one then carry the moment, too.
+
+    Parameters
+    ----------
+    tree : KDTree
+        Of the particles that may carry something; `particle` counts in it.
+    points : ndarray, shape (n, 2), m
+    spacing : float
+    """
+    distance, nearest = tree.query(points)
+    found: list[tuple[int, Indices, Array]] = []
+    for place in np.nonzero(distance > _BESIDE * spacing)[0]:
+        for reach in (_REACH, _FURTHER, _FURTHEST):
+            about = tree.query_ball_point(tree.data[nearest[place]], reach * spacing)
+            near = np.array(sorted(about), dtype=np.int64)
+            away = (tree.data[near] - points[place]) / spacing
+            if _spans(away):
+                break
+        found.append((place, near, _shares(away)))
+    beside = np.nonzero(distance <= _BESIDE * spacing)[0]
+    alone = beside, nearest[beside], np.ones(len(beside))
+    if not found:
+        return alone
+    point, particle, share = (
+        np.concatenate(pair) for pair in zip(alone, _listed(found), strict=True)
+    )
+    return point, particle, share
+
+
+def _spans(away: Array) -> bool:
+    """Whether places, (n, 2) in cells, do not all lie in a row."""
+    return len(away) > 2 and np.linalg.matrix_rank(np.c_[np.ones(len(away)), away], 1e-6) == 3
+
+
+def _shares(away: Array) -> Array:
+    """Shares of particles at places, (n, 2), cells, from a point; see above."""
+    moments = np.vstack([np.ones(len(away)), away.T])
+    size = 1.0 / ((away**2).sum(axis=1) + _AT**2)
+    # Few particles in a row have no moment across it: then the least squares of it.
+    root = moments * size
+    share = size * (np.linalg.pinv(root, rcond=1e-12) @ np.array([1.0, 0.0, 0.0]))
+    return np.asarray(share / share.sum())
+
+
+def _listed(found: list[tuple[int, Indices, Array]]) -> tuple[Indices, Indices, Array]:
+    """Points, particles and shares of all of them one after the other."""
     point = np.concatenate([np.full(len(near), place) for place, near, _ in found])
     particle, share = (np.concatenate([item[k] for item in found]) for k in (1, 2))
     return point, particle, share

@@ -6,7 +6,7 @@ lattice, once for statics (`discretisation`), at every time for what is driven (
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -24,6 +24,7 @@ from ..geometry import (
     Phases,
     Quadrature,
     on_edges,
+    on_nearest,
     on_particles,
 )
 from ..magnitude import STRAINS, outside
@@ -196,24 +197,27 @@ def share_out(
         # Edges without nodes: no treatment that has any, or held particles behind them.
         if felt.all():
             continue
-        nearest = _nearest(lattice, operator.bonds.phases, rule, np.asarray(~felt))
-        for component, values in enumerate(force):
-            np.add.at(load[component], nearest, values[~felt])
+        for which, particle, share in _nearest(lattice, operator.bonds.phases, rule, ~felt):
+            for component, values in enumerate(force):
+                np.add.at(load[component], particle, share * values[which])
     return nodal
 
 
-def _nearest(lattice: Lattice, phases: Phases | None, rule: Quadrature, which: Mask) -> Indices:
-    """The particle that is nearest to each of some points of a rule, of the edge's own phase."""
-    points, near = rule.points[which], lattice.centred
+def _nearest(
+    lattice: Lattice, phases: Phases | None, rule: Quadrature, which: Mask
+) -> Iterator[tuple[Indices, Indices, Array]]:
+    """Points of a rule, particles that carry them (of the edge's own phase), and their shares."""
+    chosen, near = np.nonzero(which)[0], lattice.centred
     if phases is None or rule.outline.phase is None:
-        return np.asarray(near.tree.query(points)[1])
-    phase = rule.outline.phase[rule.edge[which]]
-    found = np.zeros(len(points), dtype=np.int64)
+        point, particle, share = on_nearest(near.tree, rule.points[chosen], near.spacing)
+        yield chosen[point], particle, share
+        return
+    phase = rule.outline.phase[rule.edge[chosen]]
     for k in np.unique(phase):
-        own = np.nonzero(phases.of == k)[0]
-        _, place = KDTree(near.points[own]).query(points[phase == k])
-        found[phase == k] = own[place]
-    return found
+        own, mine = np.nonzero(phases.of == k)[0], chosen[phase == k]
+        tree = KDTree(near.points[own])
+        point, particle, share = on_nearest(tree, rule.points[mine], near.spacing)
+        yield mine[point], own[particle], share
 
 
 def concentrate(

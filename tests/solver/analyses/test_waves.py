@@ -543,6 +543,8 @@ def test_fields_between_steps_are_interpolated():
         ({}, (0.0, 1.0), {"step": 0.0}, "step must be a positive time"),
         ({}, (0.0, 1.0), {"step": 1.0}, "beyond the stable one"),
         ({}, (0.0, 1.0), {"courant": 1.5}, "courant"),
+        ({}, (0.0, 1e12), {}, "would not end"),
+        ({}, (0.0, 1.0), {"step": 1e-20, "scheme": "newmark"}, "would not end"),
         ({}, (0.0, 1.0), {"scheme": "euler"}, "scheme must be"),
         ({}, (0.0, 1.0), {"rotations": "none"}, "rotations must be"),
         ({}, (0.0, 1.0), {"rotations": "inertia", "scheme": "newmark"}, "needs no inertia"),

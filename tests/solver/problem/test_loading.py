@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from solver import Crack, ElasticTensor, Load, Scene, SceneError, Support, rectangle
+from solver import Crack, ElasticTensor, Load, Scene, SceneError, Support, polygon, rectangle
 from solver.geometry import Lattice
 from solver.material import calibrated
 from solver.problem import Discretisation, loading
+from tests.solver.bodies import few
 
 SOLID = ElasticTensor.isotropic(1.0, 0.2)
 HELD = Support.where(lambda x, y: x < -0.7, displacement=0.0)
@@ -67,3 +70,29 @@ def test_a_support_of_nothing_is_refused():
     nowhere = Support.where(lambda x, y: x > 9.0, displacement=0.0)
     with pytest.raises(SceneError, match="holds no particle"):
         loading.prescribed_values(*laid(supports=[nowhere]))
+
+
+@few
+@given(st.floats(0.2, 0.8), st.floats(-0.2, 0.2), st.floats(-1, 1), st.floats(-1, 1))
+def test_loads_in_a_cusp_keep_their_moment(angle, turn, s1, s2):
+    """The nearest particle may be many cells away: alone it lost a tenth of the moment."""
+    half = np.tan(0.5 * angle)
+    c, s = np.cos(turn), np.sin(turn)
+    corners = [(-1.5, 0.0), (1.0, -2.5 * half), (1.0, 2.5 * half)]
+    body = polygon([(c * x - s * y, s * x + c * y) for x, y in corners])
+    held = Support.where(lambda x, y: c * x + s * y > 0.2, displacement=0.0)
+    stress = np.array([s1, s2, 0.3])
+    upper = Load.stress(stress, where=lambda x, y: (c * y > s * x) & (c * x + s * y < 0))
+    scene = laid(body, supports=[held], loads=[upper], surface="extrapolated", m=3)[0]
+    parts = Discretisation.of(scene)
+    nodes = parts.bonds.ended.outline.nodes + parts.lattice.centred.shift
+    places = np.concatenate([parts.lattice.places, nodes])
+    force = 0.01 * np.concatenate([parts.load[:2], parts.nodal_load[:2]], axis=1)
+    # The upper edge from the tip to the middle, with the normal (−sin, cos) of its slope.
+    ends = np.array([(-1.5, 0.0), (0.0, 1.5 * half)]) @ np.array([(c, s), (-s, c)])
+    along = ends[1] - ends[0]
+    f1, f2 = np.array([[stress[0], stress[2]], [stress[2], stress[1]]]) @ [-along[1], along[0]]
+    x, y = ends.mean(axis=0)
+    np.testing.assert_allclose(force.sum(axis=1), [f1, f2], atol=1e-9)
+    moment = (places[:, 0] * force[1] - places[:, 1] * force[0]).sum()
+    assert moment == pytest.approx(x * f2 - y * f1, abs=1e-9)
