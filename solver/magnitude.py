@@ -16,6 +16,10 @@ from .errors import SceneError
 MODULI = (1e-50, 1e50)
 #: Spacings and thicknesses, in any unit.
 LENGTHS = (1e-30, 1e30)
+#: Durations and steps, in any unit.
+TIMES = (1e-50, 1e50)
+#: Values that are given, in any unit.
+VALUES = (0.0, 1e150)
 #: What a load or a prescribed value makes of a cell, as a strain (or difference over its size).
 STRAINS = (1e-100, 1e100)
 

@@ -23,6 +23,7 @@ from ..arrays import Array, Indices
 from ..bonds import Bonds, Cells
 from ..errors import SceneError
 from ..geometry import Lattice
+from ..magnitude import TIMES, outside
 from ..problem import Discretisation
 from ..result import Table, replacing, suffixed, vtk_mesh
 
@@ -65,6 +66,8 @@ def checked_times(times: ArrayLike, start: float, end: float = np.inf) -> Array:
             f"times must lie between the start at {start:g} s and the end at {end:g} s, not at "
             f"{found[0]:g} … {found[-1]:g} s"
         )
+    if wrong := outside(float(found[-1] - start), TIMES):
+        raise SceneError(f"the time from start to end is {wrong}")
     return found
 
 

@@ -18,6 +18,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 from ..arrays import Array, Mask
 from ..errors import SceneError
 from ..linear.shifted import Shifted
+from ..magnitude import TIMES, outside
 from ..operators import BondOperator
 
 #: Rotational inertia of a particle, in ρ Δx²: that of its square cell.
@@ -93,6 +94,8 @@ def require_end(span: float, step: float) -> None:
     ------
     SceneError
     """
+    if wrong := outside(step, TIMES):
+        raise SceneError(f"the step is {wrong}")
     if span > _MOST * step:
         raise SceneError(
             f"a run of {span:.3g} s in steps of {step:.3g} s has {span / step:.1e} of them and "

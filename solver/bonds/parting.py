@@ -211,6 +211,7 @@ def _split(
         nodes = np.vstack([outline.nodes, outline.nodes[node]])
         joints = np.append(outline.joints, outline.joints[node])
         ended = replace(ended, outline=Outline(nodes, edges, face, outline.owned, joints))
+        ended = _holding_on(ended, node, node, 0.0, 1)
         pair = int(before[0]), int(after[0])
         return _sided(ended, pair, across, lattice), np.append(origin, -1)
     place = (1 - position) * outline.nodes[a] + position * outline.nodes[b]
@@ -232,11 +233,24 @@ def _split(
 
     new_edge, new_position = moved(ended.edge, ended.position)
     ended = replace(ended, outline=more, edge=new_edge, position=new_position)
+    ended = _holding_on(ended, int(a), int(b), position, 2)
     if ended.chords is not None:
         new_edge, new_position = moved(ended.chords.edge, ended.chords.position)
         ended = replace(ended, chords=replace(ended.chords, edge=new_edge, position=new_position))
     pair = edge, len(more.edges) - 1
     return _sided(ended, pair, across, lattice), np.append(origin, [-1, -1])
+
+
+def _holding_on(ended: EndedBonds, a: int, b: int, position: float, count: int) -> EndedBonds:
+    """Prescribed nodes with `count` more between a and b: prescribed where both ends are."""
+    if ended.held is None or ended.given is None:
+        return ended
+    held = (ended.held[:, a] & ended.held[:, b])[:, None].repeat(count, axis=1)
+    given = (1 - position) * ended.given[:, a] + position * ended.given[:, b]
+    given = given[:, None].repeat(count, axis=1)
+    return ended.holding(
+        np.hstack([ended.held, held]), np.hstack([ended.given, np.where(held, given, 0.0)])
+    )
 
 
 def _sided(ended: EndedBonds, pair: tuple[int, int], across: Array, lattice: Lattice) -> EndedBonds:

@@ -281,7 +281,8 @@ def meet(
     """
     along, away = last - first, first - start
     cross = bond[..., 0] * along[..., 1] - bond[..., 1] * along[..., 0]
-    parallel = np.abs(cross) < 1e-12 * np.hypot(*bond.T) * np.hypot(*np.atleast_2d(along).T)
+    # An edge of no length is met by its neighbours.
+    parallel = np.abs(cross) <= 1e-12 * np.hypot(*bond.T) * np.hypot(*np.atleast_2d(along).T)
     cross = np.where(parallel, 1.0, cross)
     share = (away[..., 0] * along[..., 1] - away[..., 1] * along[..., 0]) / cross
     position = (away[..., 0] * bond[..., 1] - away[..., 1] * bond[..., 0]) / cross

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array, Mask
 from ..errors import SceneError
 from ..geometry import Lattice, Outline, Phases, Point, Quadrature, Region, Where, select, volumes
+from ..magnitude import VALUES, outside
 from ..material import ExpansionTensor
 from ..material.physics import Physics
 
@@ -81,6 +82,8 @@ def evaluate(value: Value, points: Array, components: int, what: str) -> Array:
     if not np.all(np.isfinite(result)):
         bad = points[~np.isfinite(result).all(axis=1)][0]
         raise SceneError(f"{what} is not finite at x = ({bad[0]:g}, {bad[1]:g})")
+    if wrong := outside(float(np.abs(result).max(initial=0.0)), VALUES):
+        raise SceneError(f"{what} is {wrong}")
     return np.array(result)
 
 
@@ -476,6 +479,8 @@ class Load:
         """
         if not np.isfinite(current):
             raise SceneError(f"a lead's current must be a finite number, not {current}")
+        if wrong := outside(abs(current), VALUES):
+            raise SceneError(f"a lead's current is {wrong}")
         even = cls._body("current", 1.0, 1, where).density
         assert even is not None
 
@@ -503,6 +508,8 @@ class Load:
             )
         if not (np.all(np.isfinite(given)) and np.all(np.isfinite(at))):
             raise SceneError(f"a point load that is not finite: {force!r} at {at}")
+        if wrong := outside(float(np.abs(given).max()), VALUES):
+            raise SceneError(f"a point load is {wrong}")
         acting = np.atleast_2d(given.reshape(-1))
         kind = "force" if given.ndim else "source"
         return cls(kind, points=lambda spacing: (np.array([at], dtype=np.float64), acting))

@@ -245,6 +245,7 @@ class Discretisation:
                 *self.bonds.warnings,
                 *cautions.left_over(lattice, scene.surface),
                 *cautions.on_edges(self.bonds),
+                *cautions.missing_bonds(self.bonds, self.held, self.damaged),
                 *cautions.thin_layers(lattice, given, scene.m),
                 *cautions.thin_members(lattice, scene.m, scene.surface),
                 *leads.cautions(scene, lattice),

@@ -57,9 +57,9 @@ def test_moduli_spacings_and_densities(size):
 def test_loads_and_prescribed_values(size):
     pulled = Support.where(lambda x, y: x > 2, u1=size)
     for supports, loads, said in (
-        ([HELD, pulled], [], "what is prescribed"),
-        ([HELD], [Load.body_force((size, 0.0))], "the load strains"),
-        ([HELD], [Load.stress((size, 0.0, 0.0))], "the load"),
+        ([HELD, pulled], [], "what is prescribed|a prescribed value is of the size"),
+        ([HELD], [Load.body_force((size, 0.0))], "the load strains|a body force is of the size"),
+        ([HELD], [Load.stress((size, 0.0, 0.0))], "the load|a stress at the edge is of the size"),
     ):
         scene = Scene(rectangle(6, 4), 1.0, SOLID, supports, loads, m=2, surface="extrapolated")
         with pytest.raises(SceneError, match=said):

@@ -311,6 +311,8 @@ def plain(**options):
         ({}, (0.0, [1.0]), {"tolerance": 0.0}, "tolerance"),
         ({}, (0.0, [1.0]), {"step": -1.0}, "step must be a positive time"),
         ({}, (0.0, [1.0]), {"step": 1e-12}, "would not end"),
+        ({}, (0.0, [1e-300]), {"step": 1e-300}, "leave the range of numbers"),
+        ({}, (0.0, [1.0]), {"step": 1e-300}, "leave the range of numbers"),
         ({}, (0.0, [1.0]), {"probes": [(3.0, 0.0)]}, "not in the body"),
         ({}, (0.0, [1.0]), {"probes": [0.0, 1.0]}, "points"),
         ({}, (0.0, [1.0]), {"series": "/no/such/folder/a"}, "no folder"),

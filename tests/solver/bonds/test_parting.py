@@ -106,3 +106,23 @@ def test_edges_that_are_split_keep_their_owner_and_nodes_what_they_are(angle, wi
     np.testing.assert_array_equal(outline.owned, parts.lattice.region.contains(*middle.T))
     assert len(outline.joints) == len(outline.nodes)
     np.testing.assert_array_equal(outline.joints[: len(before.nodes)], before.joints)
+
+
+@few
+@given(st.floats(-0.5, 0.5), st.floats(0.0, 0.9))
+def test_a_held_edge_that_is_split_stays_held(angle, shift):
+    """Values go on between the ends of what was one edge; both sides of a doubled node keep its."""
+    top = Support.edge(lambda x, y: y > 5.99, u2=lambda x, y: 0.1 * x)
+    base = strip().scene
+    scene = Scene(rectangle(24, 12, (shift, 0.0)), 1.0, base.material, [*base.supports, top], m=3,
+                  surface="extrapolated")  # fmt: skip
+    parts = scene.discretise()
+    pieces, _ = opened(parts, angle)
+    ended, origin = part(parts.bonds.ended, parts.lattice, pieces, NONE)
+    x, y = (ended.outline.nodes + parts.lattice.centred.shift).T
+    assert len(origin) == len(x) == ended.held.shape[1]
+    upper = y > 5.99
+    assert (upper & (origin == -1)).any()
+    np.testing.assert_array_equal(ended.held[1], upper)
+    assert not ended.held[0].any()
+    np.testing.assert_allclose(ended.given[1, upper], 0.1 * x[upper], atol=1e-12)
