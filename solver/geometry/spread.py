@@ -112,7 +112,7 @@ def on_nearest(tree: KDTree, points: Array, spacing: float) -> tuple[Indices, In
             away = (tree.data[near] - points[place]) / spacing
             if _spans(away):
                 break
-        found.append((place, near, _shares(away)))
+        found.append((int(place), near, _shares(away)))
     beside = np.nonzero(distance <= _BESIDE * spacing)[0]
     alone = beside, nearest[beside], np.ones(len(beside))
     if not found:

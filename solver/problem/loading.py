@@ -197,7 +197,9 @@ def share_out(
         # Edges without nodes: no treatment that has any, or held particles behind them.
         if felt.all():
             continue
-        for which, particle, share in _nearest(lattice, operator.bonds.phases, rule, ~felt):
+        for which, particle, share in _nearest(
+            lattice, operator.bonds.phases, rule, np.asarray(~felt)
+        ):
             for component, values in enumerate(force):
                 np.add.at(load[component], particle, share * values[which])
     return nodal
