@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import sys
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
@@ -46,6 +47,12 @@ app = typer.Typer(
     rich_markup_mode=None,
     help="Verify and time continuum-molecular models of anisotropic solids.",
 )
+
+
+class Compared(StrEnum):
+    """What a scene is solved with beside the lattice."""
+
+    FEM = "fem"
 
 
 def _complete(incomplete: str) -> list[str]:
@@ -328,12 +335,15 @@ def solve(
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace files of an earlier run.")
     ] = False,
+    compare: Annotated[
+        Compared | None, typer.Option(help="Solve the scene by finite elements, too.")
+    ] = None,
 ) -> None:
     """Do what a scene file asks for, and write its fields as .vtu and .npz."""
 
     from rich.text import Text
 
-    from cmverify.exchange import scene_file
+    from cmverify.exchange import comparison, scene_file
     from cmverify.exchange.export import check_writable
     from cmverify.exchange.output import existing
     from cmverify.run.progress import share_done
@@ -351,10 +361,16 @@ def solve(
             None if max_memory is None else max_memory * 2**30,
             max_minutes * 60,
         )
+        comparing = compare is not None or request.file.compare is not None
+        if comparing:
+            comparison.check(request)
         check_writable(base)
         with share_done(screen, request.analysis) as tell:
             result = request.run(tell)
+        beside = comparison.compare(request, result) if comparing else None
         said, paths = result.summary(), result.write(base)
+        if beside is not None:
+            paths = (*paths, *beside.write(base))
     except ValueError as error:
         _refuse(str(error))
     except OSError as error:
@@ -370,6 +386,10 @@ def solve(
     for warning in warnings:
         line = Text("warning         ", style="yellow").append(warning, style="default")
         screen.print(line, soft_wrap=True)
+    if beside is not None:
+        from cmverify.report import terminal
+
+        terminal.print_differences(screen, beside)
     screen.print("wrote", *map(str, paths), soft_wrap=True)
 
 

@@ -56,6 +56,7 @@ ELSEWHERE = {
     "cmverify/exchange/export.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/exchange/compare_command.py": "tests/cmverify/exchange/test_compare.py",
     "cmverify/exchange/statement.py": "tests/cmverify/exchange/test_case_export.py",
+    "cmverify/exchange/request.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/exchange/refusal.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/run/threads.py": "tests/cmverify/run/test_runner.py",
 }

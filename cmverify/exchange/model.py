@@ -617,3 +617,6 @@ class SceneFile(Table):
     solve: Solve = Solve()
     fracture: Fracture | None = None
     output: Output = Output()
+    compare: Literal["fem"] | None = Field(
+        default=None, description="Finite elements solve the same scene; see --compare"
+    )

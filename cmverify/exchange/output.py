@@ -74,14 +74,14 @@ class Selected(Result):
 
     def fields(self) -> dict[str, Array]:
         """Those that are asked for; stresses by the rule that is asked for."""
-        found = self._all
+        found = self.everything
         wanted = self.asked.fields
         if wanted is None or not any(name in found for name in wanted):
             return found
         return {name: found[name] for name in wanted if name in found}
 
     @cached_property
-    def _all(self) -> dict[str, Array]:
+    def everything(self) -> dict[str, Array]:
         """Every field of the result, stresses by the rule that is asked for."""
         found = self.whole.fields()
         state = self.whole.stressed
@@ -97,9 +97,9 @@ class Selected(Result):
     def summary(self) -> dict[str, Any]:
         """That of the whole result, and a warning of fields that it does not have."""
         said = self.whole.summary()
-        missing = [name for name in self.asked.fields or () if name not in self._all]
+        missing = [name for name in self.asked.fields or () if name not in self.everything]
         if missing:
-            known = ", ".join(self._all)
+            known = ", ".join(self.everything)
             warning = f"this analysis writes no {', '.join(missing)}; it has {known}"
             said["warnings"] = (*said.get("warnings", ()), warning)
         return said

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 from math import dist
 from pathlib import Path
@@ -19,104 +18,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cmverify.exchange import budget, model
+from cmverify.exchange import budget, comparison, model
 from cmverify.exchange.model import SceneFile
-from cmverify.exchange.output import Selected, along, check_fields
-from cmverify.exchange.refusal import Place, SceneFileError, Source
-from cmverify.exchange.values import InTime
+from cmverify.exchange.output import along, check_fields
+from cmverify.exchange.refusal import SceneFileError, Source
+from cmverify.exchange.request import Request, timed
 
 if TYPE_CHECKING:
     from solver import Crack, Inclusion, Load, Region, Scene, Support
-    from solver.result import Result
 
 __all__ = ["Request", "SceneFileError", "read", "request"]
-
-
-@dataclass(frozen=True)
-class Request:
-    """A scene file that has been read.
-
-    Attributes
-    ----------
-    source : Source
-        To say where something is wrong.
-    file : SceneFile
-    scene : Scene
-    analysis : str
-        What is done with it.
-    options : dict
-        Keywords of the analysis.
-    """
-
-    source: Source
-    file: SceneFile
-    scene: Scene
-    analysis: str
-    options: dict[str, Any]
-
-    def run(self, progress: Callable[[float], None] | None = None) -> Result:
-        """Do what the file asks for.
-
-        Parameters
-        ----------
-        progress : callable, optional
-            Told the share that is done, if the analysis knows it.
-
-        Raises
-        ------
-        SceneFileError
-            If the physics says no.
-        """
-        from solver.analyses import analyses
-
-        analysis, options = analyses()[self.analysis], dict(self.options)
-        if progress is not None and analysis.reports:
-            options["progress"] = progress
-        with self._refused():
-            whole = analysis.run(self.scene, **options)
-        if not self.file.output.model_fields_set:
-            return whole
-        return Selected(whole, self.file.output, self.scene.spacing)
-
-    @contextmanager
-    def _refused(self) -> Iterator[None]:
-        """What the solver refuses, with the table that it is about."""
-        try:
-            yield
-        except (ValueError, RuntimeError, ArithmeticError, np.linalg.LinAlgError) as error:
-            raise self.source.error(self._place(error), str(error)) from error
-        except MemoryError as error:
-            message = "the scene does not fit into memory: take a larger spacing or a smaller m"
-            raise self.source.error(("discretisation",), message) from error
-
-    def _place(self, error: Exception) -> Place:
-        import solver
-
-        message = str(error)
-        for number, crack in enumerate(self.scene.cracks):
-            if str(crack.points) in message:
-                return ("crack", number)
-        for place, value in _timed(self.file):
-            if any(repr(text) in message for text in value.texts):
-                return place
-        table = self.source.data.get(self.analysis, {})
-        for key in table:
-            if re.search(rf"\b{re.escape(key)}\b", message):
-                return (self.analysis, key)
-        if isinstance(error, solver.ToughnessError):
-            return (self.analysis,)
-        kinds: list[tuple[type[Exception], Place]] = [
-            (solver.MechanismError, ("support",)),
-            (solver.CalibrationError, ("material",)),
-            (solver.InadmissibleMaterialError, ("material",)),
-            (solver.ConvergenceError, ("solve", "tolerance")),
-            (solver.NegativeCurvatureError, ("material",)),
-        ]
-        for kind, place in kinds:
-            if isinstance(error, kind):
-                # A body that nothing holds has no table of supports to point to.
-                return place if place[0] in self.source.data else ("discretisation",)
-        return ("discretisation",)
 
 
 def request(path: Path, memory: float | None = None, seconds: float = budget.SECONDS) -> Request:
@@ -143,9 +54,12 @@ def request(path: Path, memory: float | None = None, seconds: float = budget.SEC
     analysis, options = _asked(file, source)
     _timeless(file, source, analysis)
     _writable(file, scene, source, analysis)
+    found = Request(source, file, scene, analysis, options)
+    if file.compare is not None:
+        comparison.check(found)
     # Later times are tried by the analysis, before it starts.
     _try_on_lattice(file, scene, source, float(options.get("start", 0.0)))
-    return Request(source, file, scene, analysis, options)
+    return found
 
 
 def read(path: Path) -> tuple[Scene, dict[str, Any]]:
@@ -191,17 +105,6 @@ def _writable(file: SceneFile, scene: Scene, source: Source, analysis: str) -> N
         raise source.error(("output", "stress_rule"), f"{what} writes no stress to recover")
 
 
-def _timed(file: SceneFile) -> Iterator[tuple[Place, InTime]]:
-    """Values that depend on time, with their places."""
-    for i, support in enumerate(file.support):
-        for name, value in support.values.items():
-            if isinstance(value, InTime):
-                yield ("support", i, name), value
-    for i, load in enumerate(file.load):
-        if isinstance(load.value, InTime):
-            yield ("load", i, "value"), load.value
-
-
 def _timeless(file: SceneFile, source: Source, analysis: str) -> None:
     """Refuse values that depend on time where there is none."""
     from solver.analyses import analyses
@@ -210,7 +113,7 @@ def _timeless(file: SceneFile, source: Source, analysis: str) -> None:
         return
     known = " or ".join(f"[{name}]" for name, one in analyses().items() if one.timed)
     what = "statics" if analysis == "solve" else f"[{analysis}]"
-    for place, value in _timed(file):
+    for place, value in timed(file):
         raise source.error(
             place,
             f"{value.texts[0]!r} depends on the time t, and {what} knows no time: ask for {known}",
@@ -500,8 +403,8 @@ def _try_on_lattice(file: SceneFile, scene: Scene, source: Source, start: float)
             with source.at("support", i, name):
                 width = 2 if name == "displacement" else 1
                 evaluate(at_time(value, start), lattice.places[chosen], width, "it")
-    for i, (entry, timed) in enumerate(zip(file.load, scene.loads, strict=True)):
-        load = timed.at(start)
+    for i, (entry, acting) in enumerate(zip(file.load, scene.loads, strict=True)):
+        load = acting.at(start)
         where = getattr(entry, "where", None)
         if where is not None and load.density is not None:
             with source.at("load", i, "where"):

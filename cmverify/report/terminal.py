@@ -12,6 +12,7 @@ from rich.text import Text
 
 from cmverify.case import Case, Level
 from cmverify.console import columns, manner, mark, show
+from cmverify.exchange.comparison import Comparison
 from cmverify.judge import precision
 from cmverify.report.summary import INCIDENTS, CaseResult, Row, table, tally
 from cmverify.report.wording import tidy
@@ -27,6 +28,22 @@ def print_cases(screen: Console, cases: Sequence[Case]) -> None:
         rows.append([case.name, case.title, case.section, " ".join(case.tags), *ladders])
     names = ("case", "title", "paper", "tags", *Level)
     show(screen, columns(*names, prose=("title", "paper", "tags", *Level)), rows)
+
+
+def print_differences(screen: Console, compared: Comparison) -> None:
+    """How far a scene's fields are from those of finite elements."""
+    rows = [
+        [one.quantity, f"{one.l2:.2e}", f"{one.largest:.2e}", f"({one.at[0]:.4g}, {one.at[1]:.4g})",
+         f"{one.own:.1e}"]
+        for one in compared.differences
+    ]  # fmt: skip
+    title = (
+        f"beside quadratic finite elements of {compared.size:.3g} m, {compared.unknowns:,} unknowns"
+    )
+    numbers = ("relative L2", "largest", "at", "finite elements' own")
+    show(screen, columns("quantity", *numbers, right=numbers), rows, title)
+    for note in compared.notes:
+        screen.print(note, soft_wrap=True)
 
 
 def cases_as_data(cases: Sequence[Case]) -> list[dict[str, Any]]:

@@ -95,8 +95,8 @@ def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64
 Segment = tuple[tuple[float, float], tuple[float, float]]
 
 
-def _triangulate(
-    draw: Callable[[ModuleType], int],
+def triangulate(
+    draw: Callable[[ModuleType], int | list[int]],
     name_edges: Callable[[NDArray[np.float64]], dict[str, NDArray[np.bool_]]],
     outer: tuple[str, ...],
     size: float,
@@ -125,14 +125,15 @@ def _triangulate(
     }
     with session(options) as gmsh:
         occ = gmsh.model.occ
-        surface = draw(gmsh)
+        drawn = draw(gmsh)
+        surfaces = [(2, tag) for tag in (drawn if isinstance(drawn, list) else [drawn])]
         lines: list[tuple[int, int]] = []
         for start, end in cracks:
             ends = [occ.addPoint(*start, 0), occ.addPoint(*end, 0)]
             lines.append((1, occ.addLine(*ends)))
         mapped: list[list[tuple[int, int]]] = []
         if lines:
-            _, mapped = occ.fragment([(2, surface)], lines)
+            _, mapped = occ.fragment(surfaces, lines)
         occ.synchronize()
         fields = [gmsh.model.mesh.field.add("MathEval")]
         gmsh.model.mesh.field.setString(fields[0], "F", repr(float(size)))
@@ -148,7 +149,7 @@ def _triangulate(
         _, connectivity = gmsh.model.mesh.getElementsByType(2)
         crack_tags = [
             gmsh.model.mesh.getElementsByType(1, tag)[1]
-            for pieces in mapped[1:]
+            for pieces in mapped[len(surfaces) :]
             for dimension, tag in pieces
             if dimension == 1
         ]
@@ -251,7 +252,7 @@ def disc(
         raise ValueError("a crack ends outside the disc")
     inner = [p for p in ends if np.hypot(*p) < 1 - 1e-9]
     refine = [(p, float(tip_size)) for p in inner] if tip_size else []
-    return _triangulate(draw, names, ("circle",), size, cracks, refine, growth)
+    return triangulate(draw, names, ("circle",), size, cracks, refine, growth)
 
 
 def crack_tip_disc(
@@ -348,4 +349,4 @@ def rectangle(
                 for t in around
             ]
     outer = ("left", "right", "bottom", "top")
-    return _triangulate(draw, names, outer, size, cracks, refine, growth)
+    return triangulate(draw, names, outer, size, cracks, refine, growth)

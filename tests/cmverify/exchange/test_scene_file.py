@@ -58,7 +58,8 @@ def test_examples_can_be_read(path):
 
 @pytest.mark.parametrize(
     "name",
-    ["cantilever", "cooling", "fuse", "heated_strip", "polar", "pulse", "shaken", "strain_gauge",
+    ["bracket", "cantilever",
+     "cooling", "fuse", "heated_strip", "polar", "pulse", "shaken", "strain_gauge",
      "watched_crack", pytest.param("modes", marks=pytest.mark.slow)],
 )  # fmt: skip
 def test_examples_run(tmp_path, name):
