@@ -28,6 +28,7 @@ ELSEWHERE = {
     "cmverify/cases/crack_tip.py": "tests/cmverify/cases/test_registry.py",
     "cmverify/cases/disc.py": "tests/cmverify/cases/test_registry.py",
     "cmverify/cases/first_break.py": "tests/cmverify/faults/test_table.py",
+    "cmverify/cases/surfaces/isotropic.py": "tests/cmverify/exchange/test_other_codes.py",
     "cmverify/cases/patch.py": "tests/cmverify/cases/test_registry.py",
     "cmverify/cases/recovered.py": "tests/cmverify/faults/test_table.py",
     "cmverify/cases/solids.py": "tests/cmverify/faults/test_table.py",
