@@ -112,8 +112,8 @@ CASES = (
         tags=("surface", "elasticity", "hole"),
         shows=(
             "At the Poisson's ratio that central forces have, bonds that end at the surface come "
-            "near Kirsch's closed form; codes that leave or stiffen cut families keep an error of first "
-            "order at the hole. Other programs' answers stand in docs/howto/other_codes."
+            "near Kirsch's closed form; codes that leave or stiffen cut families keep an error of "
+            "first order at the hole. Other programs' answers stand in docs/howto/other_codes."
         ),
         methods=tuple(
             Method(
