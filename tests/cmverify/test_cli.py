@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -9,11 +10,13 @@ from dataclasses import replace
 import pytest
 from typer.testing import CliRunner
 
+from cmverify.case import Level
 from cmverify.cases import registry
 from cmverify.cli import app
 from cmverify.doctor import examine
 from cmverify.report import summary
 from cmverify.run import environment, results, runner
+from cmverify.run.threads import threads_per_worker
 from references.fem import mesh
 from references.fenicsx import bridge
 from tests.cmverify import toy_registry
@@ -48,8 +51,10 @@ def test_run_writes_everything_and_succeeds(toys, tmp_path):
     shown = cli.invoke(app, ["precision", "--out", str(out)])
     assert shown.exit_code == 0, shown.output
     assert "bond/trapezium" in shown.output
+    next(out.glob("results/toy/*/0010.npz")).unlink()
     resumed = cli.invoke(app, [*given, "--resume"])
-    assert resumed.output.count("reused") == 2
+    assert resumed.exit_code == 0, resumed.output
+    assert resumed.output.count("reused") == 1
 
 
 def test_a_run_of_some_cases_keeps_those_of_the_others(toys, tmp_path):
@@ -200,9 +205,23 @@ def test_what_cannot_be_written_is_refused_before_anything_is_measured(toys, tmp
     assert not list(tmp_path.glob("out/results/*"))
 
 
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """Records of a finished run, not yet reported."""
+    folder = tmp_path_factory.mktemp("finished")
+    cases, started = [toy_registry.CASES["toy"]], "2026-01-01T00:00:00"
+    runner.run(cases, Level.QUICK, folder, registry=toy_registry.__name__)
+    plan = [list(task) for task in runner.plan(cases, Level.QUICK)]
+    about = environment.describe().as_dict()
+    command = f"cmverify run toy --level quick --jobs 1 --out {folder}"
+    info = summary.RunInfo("quick", 1, 1, command, started, 1.0, about, measured=plan)
+    summary.save_info(info, folder)
+    return folder
+
+
 @pytest.mark.parametrize("damage", ["delete", "truncate", "edit", "arrays"])
-def test_a_record_that_is_gone_or_damaged_is_no_success(toys, tmp_path, damage):
-    cli.invoke(app, ["run", "toy", "--out", str(tmp_path), "--jobs", "1"])
+def test_a_record_that_is_gone_or_damaged_is_no_success(toys, finished, tmp_path, damage):
+    shutil.copytree(finished, tmp_path, dirs_exist_ok=True)
     path = next(tmp_path.glob("results/toy/*/0010.json"))
     if damage == "delete":
         path.unlink()
@@ -219,9 +238,12 @@ def test_a_record_that_is_gone_or_damaged_is_no_success(toys, tmp_path, damage):
     assert numbers["passed"] is False
     assert "--resume" in json.dumps(numbers)
     assert "1 measurement is missing" in (tmp_path / "index.html").read_text(encoding="utf-8")
-    resumed = cli.invoke(app, ["run", "toy", "--out", str(tmp_path), "--jobs", "1", "--resume"])
-    assert resumed.exit_code == 0, resumed.output
-    assert resumed.output.count("reused") == 1
+    # Measured again, and the other one not.
+    current, threads = results.source_fingerprint(), threads_per_worker(1)
+    kept = [
+        runner._reusable(tmp_path, ("toy", "bond/trapezium", n), threads, current) for n in (10, 20)
+    ]
+    assert kept == [False, True]
 
 
 def test_a_disk_that_fills_up_stops_the_run_and_keeps_what_there_is(toys, tmp_path, monkeypatch):
@@ -239,10 +261,10 @@ def test_the_page_is_written_under_any_locale(tmp_path):
     environment = {**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
     for name in ("PYTHONIOENCODING", "LANG"):
         environment.pop(name, None)
-    given = ["run", "toughness", "--jobs", "1", "--out", str(tmp_path)]
+    given = ["run", "yardsticks", "--jobs", "1", "--out", str(tmp_path)]
     found = subprocess.run(
         [sys.executable, "-m", "cmverify", *given],
         env=environment, capture_output=True, check=False,
     )  # fmt: skip
     assert found.returncode == 0, found.stderr
-    assert "δ" in (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert "✓" in (tmp_path / "index.html").read_text(encoding="utf-8")

@@ -4,7 +4,6 @@ import os
 import time
 
 import numpy as np
-from scipy.integrate import trapezoid
 
 from cmverify.case import (
     Case,
@@ -25,7 +24,9 @@ LADDER = {Level.QUICK: (10, 20), Level.STANDARD: (10, 20, 40), Level.PAPER: (10,
 def trapezium(n: int, scale: float = 1.0) -> Measurement:
     """The integral of exp over [0, 1] by the trapezium rule: order 2, exact value e - 1."""
     x = np.linspace(0.0, 1.0, n + 1)
-    value = scale * trapezoid(np.exp(x), x)
+    y = np.exp(x)
+    # By hand: each worker process would load SciPy for it.
+    value = scale * float(np.sum(y[1:] + y[:-1])) / (2 * n)
     error = abs(value / (np.e - 1.0) - 1.0)
     grid = np.column_stack([np.tile(x, 2), np.repeat([0.0, 1.0 / n], n + 1)])
     exact = np.exp(grid[:, 0])
