@@ -1,6 +1,29 @@
 """Options and fixtures that all tests share."""
 
+import os
+from collections.abc import Iterator
+
 import pytest
+
+from cmverify.run.threads import VARIABLES, threads_per_worker
+
+# Processes that share the cores must share their threads too, or each small kernel waits for a
+# thread that another process has. Libraries read this when they are imported; Numba keeps its own
+# limit, which tests of threads need, and is told below.
+SHARE = threads_per_worker(int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1")))
+for _name in VARIABLES:
+    if _name != "NUMBA_NUM_THREADS":
+        os.environ.setdefault(_name, str(SHARE))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _threads_of_a_worker() -> Iterator[None]:
+    import numba
+
+    before = numba.get_num_threads()
+    numba.set_num_threads(min(SHARE, before))
+    yield
+    numba.set_num_threads(before)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
