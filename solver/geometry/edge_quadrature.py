@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..arrays import Array, Mask
 from ..errors import SceneError
 from .outline import Outline
-from .regions import Point, Region, Where
+from .regions import Point, Region, Where, moved_points
 
 # Quadrature points on an edge of the outline: closer than the particles, which may have to carry
 # each its own share.
@@ -50,11 +50,16 @@ class Quadrature:
 
     @classmethod
     def over(
-        cls, outline: Outline, where: Where | None = None, shift: Point = (0.0, 0.0)
+        cls,
+        outline: Outline,
+        where: Where | None = None,
+        shift: Point = (0.0, 0.0),
+        grid: float = 0.0,
     ) -> Quadrature:
         """The region's edges, or the part that `where` selects, cut off where it ends.
 
-        Parts shorter than a point's share of an edge may be overlooked.
+        Parts shorter than a point's share of an edge may be overlooked. What a region has lost to
+        rounding far from the origin is restored on multiples of `grid` (`Region.moved`).
 
         Raises
         ------
@@ -70,7 +75,7 @@ class Quadrature:
         high = low + 1.0 / _POINTS
         if isinstance(where, Region):
             x, y = shift
-            where = where.moved((-x, -y))
+            where = where.moved((-x, -y), grid)
             # Within rounding points on the rim are selected: twice the rounding tells how much
             # that adds.
             once, twice = (
@@ -89,10 +94,16 @@ class Quadrature:
 
     @classmethod
     def between(
-        cls, outline: Outline, start: Array, end: Array, shift: Point = (0.0, 0.0)
+        cls,
+        outline: Outline,
+        start: Array,
+        end: Array,
+        shift: Point = (0.0, 0.0),
+        grid: float = 0.0,
     ) -> Quadrature:
         """The edges, or parts of them, along a straight line (in the user's coordinates)."""
-        start, end = start - shift, end - shift
+        back = -shift[0], -shift[1]
+        start, end = np.array(moved_points((tuple(start), tuple(end)), back, grid))
         first, last = (outline.nodes[outline.edges[:, k]] for k in (0, 1))
         length = float(np.hypot(*(end - start)))
         along = (end - start) / length

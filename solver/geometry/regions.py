@@ -121,14 +121,17 @@ class Region(ABC):
         return common
 
 
-def _moved(points: Sequence[Point], by: Point, grid: float) -> tuple[Point, ...]:
+def moved_points(points: Sequence[Point], by: Point, grid: float) -> tuple[Point, ...]:
     """Points `by` further, exactly on multiples of `grid` that they meet within rounding."""
     given = np.array(points, dtype=np.float64)
-    there = given + by
+    return _snapped(given + by, np.maximum(np.abs(given), np.abs(by)), grid)
+
+
+def _snapped(there: Array, size: Array, grid: float) -> tuple[Point, ...]:
+    """Points on the multiples of `grid` that they meet within the rounding of numbers of a size."""
     if grid > 0:
-        rounding = _ROUNDINGS * np.maximum(np.abs(given), np.abs(by))
         near = np.rint(there / grid) * grid
-        there = np.where(np.abs(near - there) <= rounding, near, there)
+        there = np.where(np.abs(near - there) <= _ROUNDINGS * size, near, there)
     return tuple((float(x), float(y)) for x, y in there)
 
 
@@ -213,7 +216,7 @@ class Disc(Region):
         return max(self.slack, _EDGE * self.radius, _ROUNDINGS * float(np.abs(self.centre).max()))
 
     def moved(self, by: Point, grid: float = 0.0) -> Disc:
-        return Disc(self.radius, _moved((self.centre,), by, grid)[0], self._tie)
+        return Disc(self.radius, moved_points((self.centre,), by, grid)[0], self._tie)
 
     def loosened(self) -> Disc:
         return Disc(self.radius, self.centre, 2 * self._tie)
@@ -235,11 +238,13 @@ class Disc(Region):
 class Polygon(Region):
     """Simple polygon through `vertices` (without holes; subtract those).
 
-    `slack` (m) is the rounding of where it was drawn.
+    `slack` (m) is the rounding of where it was drawn; `about` its centre and the vertices from
+    there, where they are known better than the vertices are.
     """
 
     vertices: tuple[Point, ...]
     slack: float = field(default=0.0, compare=False, repr=False)
+    about: tuple[Point, tuple[Point, ...]] | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         if not np.all(np.isfinite(np.asarray(self.vertices, dtype=np.float64))):
@@ -279,10 +284,16 @@ class Polygon(Region):
         return max(self.slack, _EDGE * size, _ROUNDINGS * float(np.abs(self.bounds).max()))
 
     def moved(self, by: Point, grid: float = 0.0) -> Polygon:
-        return Polygon(_moved(self.vertices, by, grid), self._tie)
+        if self.about is None:
+            return Polygon(moved_points(self.vertices, by, grid), self._tie)
+        centre, corners = self.about
+        (there,) = moved_points((centre,), by, grid)
+        size = np.maximum(np.abs(self.vertices), np.abs(by))
+        vertices = _snapped(np.add(corners, there), size, grid)
+        return Polygon(vertices, self._tie, (there, corners))
 
     def loosened(self) -> Polygon:
-        return Polygon(self.vertices, 2 * self._tie)
+        return Polygon(self.vertices, 2 * self._tie, self.about)
 
     def outline(self, step: float) -> shapely.Geometry:
         return self.shape
@@ -456,7 +467,9 @@ def rectangle(
     c, s = np.cos(angle), np.sin(angle)
     corners = [(-width / 2, -height / 2), (width / 2, -height / 2)]
     corners += [(-x, -y) for x, y in corners]
-    return polygon([(centre[0] + c * x - s * y, centre[1] + s * x + c * y) for x, y in corners])
+    turned = tuple((float(c * x - s * y), float(s * x + c * y)) for x, y in corners)
+    vertices = tuple((float(centre[0] + x), float(centre[1] + y)) for x, y in turned)
+    return Polygon(vertices, about=(centre, turned))
 
 
 @dataclass(frozen=True)
@@ -496,7 +509,7 @@ class Crack:
 
     def moved(self, by: Point, grid: float = 0.0) -> Crack:
         """As `Region.moved`; the crack remembers as what it was drawn."""
-        result = Crack(*_moved(self.points, by, grid))
+        result = Crack(*moved_points(self.points, by, grid))
         object.__setattr__(result, "_drawn", self.drawn)
         return result
 

@@ -326,7 +326,8 @@ class Load:
         Of a load in the body: lattice, whether its edge is where it is drawn, its phases if it has
         several → (mask, what acts on each particle over its cell, shape (selected, components)).
     edge : callable, optional
-        Of a load on edges: outline, its shift from the user's coordinates → quadrature.
+        Of a load on edges: outline, its shift from the user's coordinates, the lattice's `grid` →
+        quadrature.
     points : callable, optional
         Of a concentrated load: spacing → (places, what acts at each, (k, components)).
     instant : callable, optional
@@ -340,7 +341,7 @@ class Load:
 
     kind: str
     density: Callable[[Lattice, bool, Phases | None], tuple[Mask, Array]] | None = None
-    edge: Callable[[Outline, Point], Quadrature] | None = None
+    edge: Callable[[Outline, Point, float], Quadrature] | None = None
     points: Callable[[float], tuple[Array, Array]] | None = None
     electrode: Where | None = None
     strain: Callable[..., Array] | None = None
@@ -361,7 +362,7 @@ class Load:
         kind: str,
         value: Value,
         density: Callable[[Value, Lattice, bool, Phases | None], tuple[Mask, Array]] | None = None,
-        edge: Callable[[Value, Outline, Point], Quadrature] | None = None,
+        edge: Callable[[Value, Outline, Point, float], Quadrature] | None = None,
         points: Callable[[Value, float], tuple[Array, Array]] | None = None,
     ) -> Load:
         """A load whose value may depend on time."""
@@ -541,8 +542,8 @@ class Load:
     def traction(cls, traction: Value, start: Point, end: Point) -> Load:
         """Traction (t1, t2), Pa, on the straight part of the body's edge from `start` to `end`."""
 
-        def edge(traction: Value, outline: Outline, shift: Point) -> Quadrature:
-            rule = Quadrature.between(outline, np.array(start), np.array(end), shift)
+        def edge(traction: Value, outline: Outline, shift: Point, grid: float) -> Quadrature:
+            rule = Quadrature.between(outline, np.array(start), np.array(end), shift, grid)
             if not len(rule):
                 raise SceneError(f"no edge of the body runs along {start}–{end}")
             return rule.carrying(evaluate(traction, rule.places, 2, "a traction"))
@@ -560,8 +561,8 @@ class Load:
             The part of the edge that carries it; all of it by default. Faces of cracks never do.
         """
 
-        def edge(stress: Value, outline: Outline, shift: Point) -> Quadrature:
-            rule = Quadrature.over(outline, where, shift)
+        def edge(stress: Value, outline: Outline, shift: Point, grid: float) -> Quadrature:
+            rule = Quadrature.over(outline, where, shift, grid)
             s11, s22, s12 = evaluate(stress, rule.places, 3, "a stress at the edge").T
             n1, n2 = rule.normals.T
             return rule.carrying(np.column_stack([s11 * n1 + s12 * n2, s12 * n1 + s22 * n2]))
@@ -572,8 +573,8 @@ class Load:
     def flux(cls, flux: Value, where: Where | None = None) -> Load:
         """What a flux (q1, q2), W/m² (or A/m²), carries into the body through its edges: −q·n."""
 
-        def edge(flux: Value, outline: Outline, shift: Point) -> Quadrature:
-            rule = Quadrature.over(outline, where, shift)
+        def edge(flux: Value, outline: Outline, shift: Point, grid: float) -> Quadrature:
+            rule = Quadrature.over(outline, where, shift, grid)
             q = evaluate(flux, rule.places, 2, "a flux at the edge")
             return rule.carrying(-np.einsum("ki,ki->k", q, rule.normals)[:, None])
 

@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import SceneError
 from ..geometry import Outline
-from . import loading, thickness
+from . import loading
 from .description import Description
 from .discretisation import Discretisation
 
@@ -71,12 +71,10 @@ class Forcing:
             values = np.where(np.isnan(body.values), np.nan, found)
         if self.driven:
             load = loading.body_loads(scene, body.lattice, body.moduli, body.bonds.phases)
-            edges = [item.edge for item in scene.loads if item.edge is not None]
-            shift = body.lattice.centred.shift
             rules = (
                 []
                 if self._outline is None
-                else [thickness.loaded(scene, edge(self._outline, shift)) for edge in edges]
+                else loading.on_outline(scene, self._outline, body.lattice)
             )
             nodal = loading.share_out(rules, body.lattice, body.operator, load)
             loading.concentrate(scene, body.lattice, self._cracks, body.operator, load, nodal)

@@ -158,8 +158,7 @@ def edge_loads(
     scene: Description, lattice: Lattice, sharp_tips: bool = True, phases: Phases | None = None
 ) -> list[Quadrature]:
     """Loads on the body's edges, evaluated, in the order of the scene's loads."""
-    edges = [item.edge for item in scene.loads if item.edge is not None]
-    if not edges:
+    if all(item.edge is None for item in scene.loads):
         return []
     near = lattice.centred
     moved = centred_cracks(scene.cracks, lattice)
@@ -168,7 +167,14 @@ def edge_loads(
     else:
         cracks = CrackSet.joined(Frame.of(near), moved, Body.of(near))
         outline = Outline.of(near.region, cracks, near.spacing, sharp_tips)
-    return [thickness.loaded(scene, edge(outline, near.shift)) for edge in edges]
+    return on_outline(scene, outline, lattice)
+
+
+def on_outline(scene: Description, outline: Outline, lattice: Lattice) -> list[Quadrature]:
+    """Loads on the edges of an outline that is known."""
+    near = lattice.centred
+    edges = [item.edge for item in scene.loads if item.edge is not None]
+    return [thickness.loaded(scene, edge(outline, near.shift, near.grid)) for edge in edges]
 
 
 def share_out(

@@ -69,8 +69,9 @@ def test_bad_spacing(spacing):
 def test_a_region_without_particles():
     with pytest.raises(SceneError, match="no particle"):
         Lattice(rectangle(0.01, 1.0, centre=(0.005, 0.0)), 0.1, 2)
+    # Not empty, but thinner than any cell.
     with pytest.raises(SceneError, match="no particle"):
-        Lattice(disc(0.5) - disc(1.0), 0.1, 2)
+        Lattice(disc(1.0) - disc(0.999), 0.1, 2)
 
 
 def test_a_grid_that_nobody_meant():
