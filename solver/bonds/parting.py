@@ -147,7 +147,8 @@ def part(
         left, origin = _split(left, edge, position, across, origin, lattice)
     if not split and kept.all():
         return None
-    return left, origin
+    # Chords between nodes at which no bond ends any more have gone with those.
+    return left.between(left.chords), origin
 
 
 def _on(outline: Outline, edge: Indices, position: Array) -> Array:
