@@ -17,6 +17,7 @@ from cmverify.console import console, manner, speak
 from cmverify.exchange.command import new, schema
 from cmverify.exchange.compare_command import compare, export
 from cmverify.faults.command import faults
+from cmverify.studies.anisotropy.command import material
 from cmverify.studies.speed.command import speed
 from cmverify.studies.stability.command import stability
 
@@ -107,6 +108,7 @@ app.command()(new)
 app.command()(schema)
 app.command()(speed)
 app.command()(stability)
+app.command()(material)
 
 
 @app.command("list")

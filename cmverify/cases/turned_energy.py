@@ -56,7 +56,7 @@ class Turning:
     distortion: float = 1.0
 
 
-def energy_ratio(voigt: Array, turning: Turning, m: int) -> Array:
+def energy_ratio(voigt: Array, turning: Turning, m: float) -> Array:
     """Lattice energy over the exact one, (angles of `DEGREES`, strains of `STRAINS`).
 
     The rotation of the particles is that of the strain, zero: relaxing it would change nothing,

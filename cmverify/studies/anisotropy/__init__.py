@@ -1,0 +1,1 @@
+"""What a researcher wants to know of a solid before choosing a model of it."""
