@@ -69,3 +69,40 @@ class VCycle:
     def time_v_cycle(self, resolution: int, precision: str) -> None:
         """Seconds."""
         self.inverse.matvec(self.residual)
+
+
+class SetUp:
+    """The coarse matrix of the crack tip, and all before the iterations of a plate with a hole."""
+
+    params = (60, 120, 240)
+    param_names = ("a over spacing",)
+    timeout = 120.0
+
+    def setup(self, resolution: int) -> None:
+        """Compile, and keep scenes and hats."""
+        from dataclasses import replace
+
+        from cmverify.studies.speed.scenes import crack_tip, static_scenes
+        from solver.linear import Hats
+
+        self.hats = Hats(crack_tip(resolution).discretise().operator, 8)
+        plate = static_scenes(resolution)["plate with a hole"]
+        self.plates = {
+            surface: replace(plate, surface=surface) for surface in ("volume", "extrapolated")
+        }
+        for plate in self.plates.values():
+            plate.solve(1e-8)
+        self.hats.galerkin()
+
+    def time_galerkin(self, resolution: int) -> None:
+        """Seconds of the coarse matrix."""
+        self.hats.galerkin()
+
+    def track_extrapolated_over_volume(self, resolution: int) -> float:
+        """CPU seconds with bonds that end at the surface over those with volume factors."""
+        spent = {}
+        for surface, plate in self.plates.items():
+            begun = process_time()
+            plate.solve(1e-8)
+            spent[surface] = process_time() - begun
+        return spent["extrapolated"] / spent["volume"]

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -210,6 +211,18 @@ class Outline:
         ends = self.nodes[self.edges]
         return np.asarray(shapely.linestrings(ends))
 
+    @cached_property
+    def _boxes(self) -> shapely.STRtree:
+        """Boxes about the edges, padded: rounding hides none from a bond that starts on it."""
+        first, last = self.nodes[self.edges[:, 0]], self.nodes[self.edges[:, 1]]
+        pad = TIE * self.length.max()
+        return shapely.STRtree(
+            shapely.box(
+                *(np.minimum(first, last) - pad).T,
+                *(np.maximum(first, last) + pad).T,
+            )
+        )
+
     def _hit(
         self,
         start: Array,
@@ -227,16 +240,10 @@ class Outline:
         edge, position, share = np.full(count, -1), np.zeros(count), np.zeros(count)
         outward = self.outward
         first, last = self.nodes[self.edges[:, 0]], self.nodes[self.edges[:, 1]]
-        # Padded, so that rounding hides no edge from a bond that starts on it.
-        pad = TIE * np.array([-1.0, 1.0])[:, None] * self.length.max()
-        (x0, y0), (x1, y1) = (
-            end(first.T, last.T) + by for end, by in zip((np.minimum, np.maximum), pad, strict=True)
-        )
-        tree = shapely.STRtree(shapely.box(x0, y0, x1, y1))
         for begin in range(0, count, _CHUNK):
             part = slice(begin, min(begin + _CHUNK, count))
             ends = [start[part] + where * bond[part] for where in (low, high)]
-            path, met = tree.query(shapely.linestrings(np.stack(ends, axis=1)))
+            path, met = self._boxes.query(shapely.linestrings(np.stack(ends, axis=1)))
             path += begin
             where, depth, valid = meet(start[path], bond[path], first[met], last[met], low, high)
             # Bonds leave through an edge and do not enter: particles may lie in a sliver. A
@@ -280,15 +287,18 @@ class Outline:
         """Whether bonds lead out from a particle that lies beyond an edge, on to another one."""
         beyond = np.zeros(len(start), dtype=bool)
         own = np.nonzero(self.face == 0)[0]
-        places, which = np.unique(start, axis=0, return_inverse=True)
+        # Bonds of a particle follow each other.
+        other = np.ones(len(start), dtype=bool)
+        other[1:] = (start[1:] != start[:-1]).any(axis=1)
+        places, which = start[other], np.cumsum(other) - 1
         points, tree = shapely.points(places), shapely.STRtree(self._lines[own])
         at, nearest = tree.query_nearest(points, all_matches=False)
         edge = np.full(len(places), -1)
         edge[at] = own[nearest]
         away = places - self.nodes[self.edges[edge, 0]]
         out = np.einsum("ki,ki->k", away, self.outward[edge])
-        off = (out > TIE * self.length[edge])[which.ravel()]
-        edge = edge[which.ravel()]
+        off = (out > TIE * self.length[edge])[which]
+        edge = edge[which]
         beyond[off] = np.einsum("ki,ki->k", bond[off], self.outward[edge[off]]) > 0
         return beyond
 

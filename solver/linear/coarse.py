@@ -4,9 +4,10 @@ Hats reach across cracks, and a correction that ties both faces together is wort
 hat whose support is cut into separate pieces (by whatever bonds are broken: straight or curved
 cracks, damage) becomes one hat a piece.
 
-The Galerkin matrix Pᵀ K P is found by probing: hats further apart than their supports plus two
-horizons do not feel each other, so that one product with the fine operator serves a whole colour
-of them. Some hundred products, whatever the size of the body, and the fine matrix never exists.
+In the Galerkin matrix Pᵀ K P the entries between hats of the bulk are one stencil (`stencil`), the
+others are found by probing: hats further apart than their supports plus two horizons do not feel
+each other, so that one product with the fine operator serves a whole colour of them. Some hundred
+products near what is special, and the fine matrix never exists.
 """
 
 from __future__ import annotations
@@ -20,9 +21,15 @@ from scipy.sparse.csgraph import connected_components
 
 from ..arrays import Array, Float, Indices
 from ..operators import BondOperator, kernels
+from . import stencil
 
 # Hats a node at most; a support in more pieces than this is rubble.
 _PIECES = 4
+# Gap between hats, in windows, that is not worth a product.
+_GAP = 6
+# Entries of what the surface's nodes add, relative to the largest, that are not worth their place
+# in the factors.
+_SMALL = 1e-6
 
 
 @dataclass(frozen=True)
@@ -172,11 +179,17 @@ class Hats:
             (self._pieces_most, row.max() + 2 * period + 1, column.max() + 2 * period + 1), -1
         )
         lookup[self.piece, row + period, column + period] = np.arange(self.count)
-        stale = np.ones(self.count, dtype=bool) if known is None else self._stale(changed)
-        if known is not None and not stale.any():
-            return known[1]
+        if known is None:
+            phase = stencil.phases(operator, row, column, h)
+            stale = phase < 0
+            standing = self._regular(phase, lookup[0], period, window)
+        else:
+            stale = self._stale(changed)
+            if not stale.any():
+                return known[1]
+            standing = self._standing(*known, stale)
         probe = _Probe(self)
-        values, starts, ends = [], [], []
+        values, starts, ends = [standing[0]], [standing[1]], [standing[2]]
         for colour in range(self._pieces_most * period**2):
             piece, rest = divmod(colour, period**2)
             colour_row, colour_column = divmod(rest, period)
@@ -189,23 +202,17 @@ class Hats:
             source = lookup[piece, row + up + period, column + right + period]
             felt = np.nonzero((source >= 0) & stale[source])[0]
             probe.light(lit)
+            # Columns of stale hats are probed; their rows follow by symmetry, the rest stands.
+            mirrored = ~stale[felt]
             for b in range(c):
-                answer = probe(b)[:, felt]
+                answer = probe(b, felt)
                 for a in range(c):
-                    values.append(answer[a])
-                    starts.append(a * self.count + felt)
-                    ends.append(b * self.count + source[felt])
+                    here, there = a * self.count + felt, b * self.count + source[felt]
+                    values += [answer[a], answer[a, mirrored]]
+                    starts += [here, there[mirrored]]
+                    ends += [there, here[mirrored]]
         size = c * self.count
         data, i, j = np.concatenate(values), np.concatenate(starts), np.concatenate(ends)
-        if known is not None:
-            # Columns of stale hats were probed; their rows follow by symmetry, the rest stands.
-            mirrored = ~stale[i % self.count]
-            old_data, old_i, old_j = self._standing(*known, stale)
-            data = np.concatenate([data, data[mirrored], old_data])
-            i, j = (
-                np.concatenate([i, j[mirrored], old_i]),
-                np.concatenate([j, i[mirrored], old_j]),
-            )
         return sparse.coo_array((data, (i, j)), shape=(size, size)).tocsc()
 
     def ended(self) -> sparse.csr_array | None:
@@ -213,7 +220,7 @@ class Hats:
         if self.operator.ended_stiffness is None:
             return None
         return self.operator.ended_stiffness.condensed(
-            self.operator.surface_basis(self.prolongation)
+            self.operator.surface_basis(self.prolongation), _SMALL
         )
 
     def _stale(self, changed: Indices | None) -> NDArray[np.bool_]:
@@ -231,6 +238,29 @@ class Hats:
                     for one in (0, 1):
                         nodes[r + one, k] = nodes[r + one, k + 1] = True
         return nodes.ravel()[self.node]
+
+    def _regular(
+        self, phase: Indices, lookup: Indices, margin: int, window: int
+    ) -> tuple[Array, Indices, Indices]:
+        """Entries between hats of the bulk, by the stencil of their phase."""
+        c = self.operator.components
+        row, column = self.node // self.width + margin, self.node % self.width + margin
+        values, starts, ends = [np.zeros(0)], [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
+        for number in range(len(self.operator.bulk)):
+            hats = np.nonzero(phase == number)[0]
+            if not len(hats):
+                continue
+            found = stencil.entries(self.operator, number, self.coarsening, window)
+            for up, right in np.ndindex(found.shape[:2]):
+                other = lookup[row[hats] + up - window, column[hats] + right - window]
+                both = (other >= 0) & (phase[other] == number)
+                here, there = hats[both], other[both]
+                for a, b in np.ndindex(c, c):
+                    if entry := found[up, right, a, b]:
+                        values.append(np.full(len(here), entry))
+                        starts.append(a * self.count + here)
+                        ends.append(b * self.count + there)
+        return np.concatenate(values), np.concatenate(starts), np.concatenate(ends)
 
     def _standing(
         self, before: Hats, matrix: sparse.csc_array, stale: NDArray[np.bool_]
@@ -256,19 +286,25 @@ class _Probe:
         self.hats, operator = hats, hats.operator
         self.fine = np.zeros((operator.components, len(operator.active)))
         self.image = np.zeros_like(self.fine)
+        self.segments = operator.segments[:0]
+        self.particles = np.zeros(0, dtype=np.uint64)
+        operator.clear()
 
     def light(self, lit: NDArray[np.bool_]) -> None:
         """Turn to other hats; their rows of windows do not overlap."""
         hats, operator = self.hats, self.hats.operator
         self.lit = lit
+        # What other windows left must be neither read nor restricted.
+        self.fine[:, self.particles] = self.image[:, self.particles] = 0.0
+        kernels.scatter(self.segments, self.fine, operator.grid)
         margin = hats.coarsening - 1 + operator.bonds.family.reach
         row, column = np.divmod(hats.node[lit], hats.width)
-        # One window for all lit hats of a node row: short runs of particles cost the kernel more
-        # than the gaps between the hats do.
-        rows, group = np.unique(row, return_inverse=True)
-        low, high = np.full(len(rows), column.max()), np.zeros(len(rows), dtype=np.int64)
-        np.minimum.at(low, group, column)
-        np.maximum.at(high, group, column)
+        # One window for neighbours in a node row: short runs of particles cost the kernel more
+        # than the gaps between such hats do.
+        apart = (np.diff(row) > 0) | (np.diff(column) > _GAP * margin // hats.coarsening)
+        first = np.concatenate([[0], np.nonzero(apart)[0] + 1])
+        last = np.append(first[1:], len(row)) - 1
+        rows, low, high = row[first], column[first], column[last]
         spread = np.array([-margin, -margin, margin, margin])
         boxes = hats.coarsening * np.column_stack([rows, low, rows, high]) + spread
         self.segments = operator.windows(boxes)
@@ -276,13 +312,9 @@ class _Probe:
         # Positions first, first + 1, … of every segment.
         shift = np.repeat(first - np.concatenate([[0], np.cumsum(size)[:-1]]), size)
         self.particles = (np.arange(size.sum()) + shift).astype(np.uint64)
-        # What other windows left must be neither read nor restricted.
-        operator.clear()
-        self.fine[:] = 0.0
-        self.image[:] = 0.0
 
-    def __call__(self, component: int) -> Float:
-        """Pᵀ K P e for the sum e of the lit hats in one component."""
+    def __call__(self, component: int, felt: Indices) -> Float:
+        """Some rows of Pᵀ K P e for the sum e of the lit hats in one component."""
         hats = self.hats
         unit = np.zeros((1, hats.count))
         unit[0, self.lit] = 1.0
@@ -290,4 +322,5 @@ class _Probe:
             self.fine[component - 1, self.particles] = 0.0
         hats.prolong(unit, self.particles, self.fine[component : component + 1])
         hats.operator.product(self.fine, masked=True, segments=self.segments, out=self.image)
-        return hats.restrict(self.image)
+        out = np.empty((len(self.image), hats.count))
+        return hats.restrict(self.image, felt.astype(np.uint64), out)[:, felt]

@@ -230,35 +230,43 @@ def _chains(outline: Outline, edges: Indices, reach: float) -> tuple[Array, Indi
 
     A chain ends at corners and beyond `reach`; there its last edge goes straight on.
     """
-    first, last = outline.edges.T
     before, following = outline.beside
     ends = outline.nodes[outline.edges]
     angle = np.arctan2(*(ends[:, 1] - ends[:, 0]).T[::-1])
+    middle = 0.5 * (ends[edges, 0] + ends[edges, 1])
 
-    def walk(edge: int, ahead: bool) -> list[int]:
-        middle, found, current, bend = ends[edge].mean(axis=0), [], edge, 0.0
-        while np.hypot(*(ends[current][int(ahead)] - middle)) < reach:
-            node = last[current] if ahead else first[current]
-            after = int(following[node] if ahead else before[node])
-            if after < 0 or after == edge or after in found:
-                break
+    def walk(ahead: bool) -> Indices:
+        """Edges on one side of each, the next one first, (e, steps), −1 beyond the last."""
+        found: list[Indices] = []
+        current = edges.copy()
+        bend, going = np.zeros(len(edges)), np.ones(len(edges), dtype=bool)
+        while True:
+            away = ends[current, int(ahead)] - middle
+            going &= np.hypot(*away.T) < reach
+            node = outline.edges[current, int(ahead)]
+            after = np.where(going, (following if ahead else before)[node], -1)
+            going &= (after >= 0) & (after != edges)
+            for earlier in found:
+                going &= after != earlier
             turn = (angle[after] - angle[current] + np.pi) % (2 * np.pi) - np.pi
-            bend += abs(turn)
-            if abs(turn) > _CORNER or bend > _BEND:
-                break
-            found.append(after)
-            current = after
-        return found
+            bend += np.where(going, np.abs(turn), 0.0)
+            going &= (np.abs(turn) <= _CORNER) & (bend <= _BEND)
+            if not going.any():
+                return np.array(found, dtype=np.int64).reshape(-1, len(edges)).T
+            found.append(np.where(going, after, -1))
+            current = np.where(going, after, current)
 
-    curves = []
-    for edge in edges:
-        ahead, back = walk(int(edge), True), walk(int(edge), False)
-        ring = [*back[::-1], int(edge), *[k for k in ahead if k not in back]]
-        curves.append(np.array([ends[ring[0]][0], *[ends[k][1] for k in ring]]))
-    length = np.array([len(curve) for curve in curves])
-    points = np.zeros((len(curves), length.max(), 2))
-    for place, curve in enumerate(curves):
-        points[place, : len(curve)] = curve
+    back, forth = walk(False), walk(True)
+    # On a small hole both come to the same edges.
+    again = (forth[:, :, None] == back[:, None]).any(axis=2)
+    forth = np.where(again, -1, forth)
+    ring = np.column_stack([back[:, ::-1], edges, forth])
+    ring = np.take_along_axis(ring, np.argsort(ring < 0, axis=1, kind="stable"), axis=1)
+    length = (ring >= 0).sum(axis=1) + 1
+    points = np.zeros((len(edges), int(length.max()), 2))
+    points[:, 0] = ends[ring[:, 0], 0]
+    points[:, 1:] = ends[ring[:, : length.max() - 1], 1]
+    points[np.arange(points.shape[1]) >= length[:, None]] = 0.0
     return points, length
 
 

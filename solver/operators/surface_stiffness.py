@@ -15,6 +15,7 @@ from ..arrays import Array, Indices, Mask
 from ..bonds import EndedBonds
 from ..material import Family, Moduli
 from .blocks import entries
+from .halves import Halves
 from .surface_pieces import (
     BondStrains,
     Layers,
@@ -28,8 +29,6 @@ from .surface_pieces import (
 
 # Ratio of pivots below which the nodes' stiffness counts as singular.
 _SINGULAR = 1e-14
-# Particles whose columns are solved for at once.
-_CHUNK = 200
 
 
 def stiffness_of(ended: EndedBonds, family: Family, moduli: Moduli) -> SurfaceStiffness:
@@ -287,16 +286,14 @@ class SurfaceStiffness:
         nodes = self._lu.solve(self._force(load, given))
         return (self._back @ nodes).reshape(self.components, -1)
 
-    def condensed(self, basis: sparse.csr_array) -> sparse.csr_array:
-        """−Bᵀ K_ps K_ss⁻¹ K_sp B for a sparse basis B of the particles' values."""
-        lowered = sparse.csc_array(self._free_coupling @ basis)
-        used = np.unique(lowered.nonzero()[1])
-        dense = lowered[:, used].toarray()
-        block = -(dense.T @ self._lu.solve(dense))
-        place = sparse.csr_array(
-            (np.ones(len(used)), (used, np.arange(len(used)))), shape=(basis.shape[1], len(used))
-        )
-        return sparse.csr_array(place @ sparse.csr_array(0.5 * (block + block.T)) @ place.T)
+    def condensed(self, basis: sparse.csr_array, least: float = 0.0) -> sparse.csr_array:
+        """−Bᵀ K_ps K_ss⁻¹ K_sp B for a sparse basis B of the particles' values.
+
+        Entries below `least` of the largest are left out, and the diagonal makes up for them.
+        """
+        half, signed = self._halves.of(sparse.csc_array(self._free_coupling @ basis))
+        form = sparse.csr_array(half.T @ signed)
+        return _lumped(-0.5 * sparse.csr_array(form + form.T), least)
 
     def strains(self, values: Array, nodal: Array) -> tuple[Array, Array]:
         """Strains s and γ (or g) of the bonds, and the differences of the values at their ends.
@@ -374,16 +371,21 @@ class SurfaceStiffness:
 
     def _relief_of(self, which: Indices) -> Array:
         c, count = self.components, len(self.particles)
+        columns = (which + count * np.arange(c)[:, None]).ravel()
+        found = self._halves.of(sparse.csc_array(self._free_coupling[:, columns]))
+        # One particle's columns at a time: only their products among themselves count.
+        half, signed = (
+            [part[:, a * len(which) : (a + 1) * len(which)] for a in range(c)] for part in found
+        )
         blocks = np.zeros((len(which), c, c))
-        for begin in range(0, len(which), _CHUNK):
-            part = which[begin : begin + _CHUNK]
-            columns = (part[:, None] + count * np.arange(c)).ravel()
-            right = self._free_coupling[:, columns].toarray()
-            solved = self._lu.solve(right)
-            # One particle's columns at a time: only their products among themselves count.
-            right, solved = (x.reshape(-1, len(part), c) for x in (right, solved))
-            blocks[begin : begin + len(part)] = -np.einsum("spa,spb->pab", right, solved)
+        for a in range(c):
+            for b in range(c):
+                blocks[:, a, b] = -half[a].multiply(signed[b]).sum(axis=0)
         return 0.5 * (blocks + blocks.transpose(0, 2, 1))
+
+    @cached_property
+    def _halves(self) -> Halves:
+        return Halves(self._lu)
 
     @cached_property
     def nbytes(self) -> int:
@@ -397,3 +399,16 @@ def _stiffness_of_skin(skin: Membrane | None, shape: tuple[int, int]) -> sparse.
     if skin is None:
         return sparse.csc_array(shape)
     return sparse.csc_array(skin.strain.T @ sparse.diags_array(skin.weight) @ skin.strain)
+
+
+def _lumped(matrix: sparse.csr_array, least: float) -> sparse.csr_array:
+    """A symmetric matrix without its small entries, their sizes added to the diagonal.
+
+    What is added is positive semi-definite: it cannot take stiffness away.
+    """
+    small = np.abs(matrix.data) < least * np.abs(matrix.data).max(initial=0.0)
+    gone = matrix.copy()
+    gone.data = np.where(small, np.abs(matrix.data), 0.0)
+    matrix.data[small] = 0.0
+    matrix.eliminate_zeros()
+    return sparse.csr_array(matrix + sparse.diags_array(gone.sum(axis=1)))

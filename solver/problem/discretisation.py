@@ -9,6 +9,7 @@ from time import perf_counter
 import numpy as np
 
 from ..arrays import Array, Mask
+from ..blas import one_thread
 from ..bonds import Bonds
 from ..errors import MechanismError, SceneError
 from ..geometry import Lattice
@@ -94,6 +95,14 @@ class Discretisation:
         SceneError
             If the scene has constraints and the caller does not know them.
         """
+        with one_thread():
+            # Factors, products and least squares are the same whatever threads BLAS has.
+            return cls._of(scene, sharp_tips, constrained, free)
+
+    @classmethod
+    def _of(
+        cls, scene: Description, sharp_tips: bool, constrained: bool, free: bool
+    ) -> Discretisation:
         begun = perf_counter()
         family = scene.family()
         each, stability = inclusions.solids(scene, family)

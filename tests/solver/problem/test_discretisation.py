@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from solver import ElasticTensor, Load, Scene, Support, rectangle
 from solver.operators.assembled import to_csr
@@ -76,3 +77,16 @@ def test_surface_values(surface):
     built = scene(surface=surface).discretise()
     values = built.surface_values(np.zeros((3, built.lattice.count)))
     assert (values is None) == (surface == "none")
+
+
+def test_building_keeps_blas_to_one_thread():
+    seen = []
+
+    def displacement(x, y):
+        seen.extend(lib["num_threads"] for lib in threadpool_info() if lib["user_api"] == "blas")
+        return np.zeros((len(x), 2))
+
+    with threadpool_limits(limits=2, user_api="blas"):
+        support = Support.where(lambda x, y: x < -0.3, displacement=displacement, rotation=0.0)
+        scene(supports=[support]).discretise()
+    assert set(seen) == {1}
