@@ -21,6 +21,9 @@ from cmverify.studies.anisotropy.command import material
 from cmverify.studies.speed.command import speed
 from cmverify.studies.stability.command import stability
 
+#: What the parser raises, whichever library typer builds on.
+UsageError: Any = typer.BadParameter.__mro__[1]
+
 
 class _Commands(TyperGroup):
     """Commands that end with exit code 3 and one line when they are interrupted."""
@@ -39,6 +42,18 @@ class _Commands(TyperGroup):
                 return super().invoke(ctx)
         except KeyboardInterrupt:
             _interrupted("nothing is left half-written; the same command starts anew")
+        except (typer.Exit, typer.Abort, UsageError):
+            raise
+        except MemoryError:
+            _interrupted("there is not enough memory for it")
+        except Exception as error:
+            if manner().verbose:
+                raise
+            said = " ".join(str(error).split())[:300]
+            _interrupted(
+                f"this should not have happened, {type(error).__name__}: {said} "
+                f"(cmverify --verbose … shows where)"
+            )
 
 
 app = typer.Typer(
@@ -297,6 +312,12 @@ def errata(
         raise typer.Exit(1 if any(item.failed for item in judged) else 0)
     if page is not None:
         from cmverify.report.errata_page import write_page
+        from cmverify.run import folder
+
+        try:
+            folder.check_file(page)
+        except folder.FolderError as error:
+            _refuse(str(error))
 
         failed = write_page([audit.judge(entry) for entry in chosen], page)
         typer.echo(f"{page}")
@@ -351,6 +372,8 @@ def solve(
     from cmverify.run.progress import share_done
 
     screen = console()
+    if not scene.name or scene.is_dir():
+        _refuse(f"{scene} is a folder, and a scene is a file")
     base = out or scene.with_suffix("")
     try:
         if out is not None and out.is_dir():

@@ -92,9 +92,9 @@ def compare(
         case = registry.get(name)
         pose = pose_of(case, problem)
         n = judging.resolution_of(case, pose, level, resolution)
-        folder.check(out)
         targets = pose.state(n).targets
         read = [_read(given, targets, reading) for given in answers]
+        folder.check(out)
         ours = judging.our_record(case, pose, n, run)
         found = judging.compare(case, pose, n, read, ours, held_to)
     except ValueError as error:

@@ -35,10 +35,16 @@ def speed(
     """
     from cmverify.console import console
     from cmverify.judge.verdict import Verdict
+    from cmverify.run import folder
     from cmverify.run.environment import describe
     from cmverify.studies.speed import measure, modes, verdicts
 
     screen = console()
+    try:
+        folder.check_file(out / "speed.json")
+    except folder.FolderError as error:
+        typer.secho(f"error: {error}", fg=typer.colors.RED, err=True)
+        raise typer.Exit(2) from error
     resolution = _RESOLUTION[level]
     tables: dict[str, list[Any]] = {}
     found: list[Verdict] = []

@@ -64,6 +64,7 @@ def stability(
     """
     from cmverify.cases.common import materials
     from cmverify.console import console
+    from cmverify.run import folder
     from cmverify.studies.stability import page
     from cmverify.studies.stability.assessments import compare
 
@@ -75,6 +76,7 @@ def stability(
             for name, tensor in solids.items()
             for verdict in compare(name, tensor, m, area_rule.value)
         ]
+        folder.check_file(out / "stability.html")
     except ValueError as error:
         typer.secho(f"error: {error}", fg=typer.colors.RED, err=True)
         raise typer.Exit(2) from error

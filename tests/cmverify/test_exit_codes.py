@@ -1,0 +1,146 @@
+"""Exit codes: 0 all holds, 1 a check fails, 2 the request is wrong, 3 interrupted; no traceback.
+
+`test_cli` has the runs that hold and those that fail; here every command is asked for what it
+cannot do.
+"""
+
+import numpy as np
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from cmverify import cli, errata
+from cmverify.cli import app
+from cmverify.exchange import scene_file
+from tests.cmverify.exchange.test_scene_file import SMALL
+
+#: Of each command: arguments that are wrong before any work. `file` is a file, `folder` a folder.
+WRONG = {
+    "compare": [["nosuch", "a.npz"], [], ["patch", "missing.npz"]],
+    "doctor": [["nosuch"]],
+    "errata": [["999"], ["--page", "file/x.html"], ["--page", "folder"]],
+    "export": [["nosuch"]],
+    "faults": [["nosuch"], ["--nosuch"]],
+    "list": [["nosuch"]],
+    "material": [[], ["nosuch"], ["silicon", "--m", "0"], ["--voigt", "1,0,0,1,0,nan"],
+                 ["broken.toml"], ["folder.toml"]],
+    "new": [["nosuch"], ["static", "--out", "file/x"], ["static", "--out", "folder"]],
+    "precision": [["--out", "missing"], ["nosuch"]],
+    "report": [["--out", "missing"], ["--out", "file"]],
+    "run": [["nosuch"], ["--jobs", "-1"], ["--timeout", "nan"], ["--level", "nosuch"],
+            ["patch", "--out", "file/x"], ["patch", "--json", "folder"]],
+    "schema": [["--out", "file/x"], ["--folder", "file"]],
+    "solve": [["missing.toml"], ["broken.toml"], ["folder"], ["."], ["x\0y"],
+              ["scene.toml", "--out", "folder"], ["scene.toml", "--out", "file/x"],
+              ["scene.toml", "--max-memory", "-1"], ["scene.toml", "--max-minutes", "0"],
+              ["scene.toml", "--max-memory", "1e-9"], ["scene.toml", "--compare", "nosuch"]],
+    "speed": [["--level", "nosuch"], ["--out", "file/x"]],
+    "stability": [["--material", "nosuch"], ["--m", "nan", "--material", "silicon"],
+                  ["--material", "silicon", "--out", "file/x"]],
+}  # fmt: skip
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """A folder with some files that are no good."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").touch()
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder.toml").mkdir()
+    (tmp_path / "broken.toml").write_bytes(b"\xff\xfe[")
+    (tmp_path / "scene.toml").write_text(SMALL, encoding="utf-8")
+    return tmp_path
+
+
+def invoked(*given):
+    found = CliRunner().invoke(app, given)
+    assert found.exception is None or isinstance(found.exception, SystemExit), found.exception
+    assert "Traceback" not in found.output
+    return found.exit_code, found.output.strip()
+
+
+def test_every_command_is_asked_for_something_wrong():
+    group = typer.main.get_command(app)
+    assert set(group.commands) == set(WRONG)
+
+
+@pytest.mark.parametrize(
+    ("command", "given"), [(c, g) for c, several in WRONG.items() for g in several], ids=str
+)
+def test_wrong_requests_are_two_in_few_words_and_leave_nothing(here, command, given):
+    before = sorted(here.rglob("*"))
+    code, said = invoked(command, *given)
+    assert code == 2, said
+    # A line of ours, or the usage as the parser tells it.
+    assert len(said.splitlines()) == 1 or said.startswith("Usage: "), said
+    assert sorted(here.rglob("*")) == before
+
+
+def test_an_unknown_command_is_a_wrong_request():
+    assert invoked("nosuch")[0] == 2
+    assert invoked("--nosuch")[0] == 2
+
+
+def test_a_check_that_fails_is_one(monkeypatch):
+    monkeypatch.setattr(errata, "print_errata", lambda *_: False)
+    assert invoked("errata")[0] == 1
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), MemoryError(), RuntimeError("odd [/x]")])
+def test_what_breaks_off_is_three_in_one_line(here, monkeypatch, error):
+    def broken(*_, **__):
+        raise error
+
+    monkeypatch.setattr(cli, "_select", broken)
+    code, said = invoked("list")
+    assert code == 3
+    assert said.startswith("interrupted: ")
+    assert len(said.splitlines()) == 1
+
+
+def test_a_fault_of_ours_is_shown_to_those_who_ask(monkeypatch):
+    monkeypatch.setattr(cli, "_select", lambda *_: 1 / 0)
+    assert "ZeroDivisionError" in invoked("list")[1]
+    found = CliRunner().invoke(app, ["--verbose", "list"])
+    assert isinstance(found.exception, ZeroDivisionError)
+
+
+# ---- scene files: encodings and hints ---------------------------------------------------
+
+
+@pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"])
+def test_utf8_with_and_without_a_mark_under_any_locale(here, monkeypatch, mark):
+    monkeypatch.setenv("LC_ALL", "C")
+    text = f'title = "Scheibe, ø 2 m: ∇²T = 0"\n{SMALL}'
+    (here / "scene.toml").write_bytes(mark + text.encode())
+    assert scene_file.request(here / "scene.toml").file.title.startswith("Scheibe, ø")
+    (here / "scene.toml").write_bytes(text.encode("utf-16"))
+    assert invoked("solve", "scene.toml")[0] == 2
+    # A line of a file with a mark has the number that an editor shows.
+    (here / "scene.toml").write_bytes(mark + text.replace("radius", "raduis").encode())
+    assert "scene.toml:8" in invoked("solve", "scene.toml")[1]
+
+
+@pytest.mark.parametrize(
+    ("formula", "hint"),
+    [("x^2", "x**2"), ("x < 1 and y < 2", "(x < 1) * (y < 2)"), ("x < 1 or y < 2", "+ (y < 2)"),
+     ("x if y < 0 else 1", "where("), ("0 < x < 1", "(x < 1) * (y < 2)")],
+)  # fmt: skip
+def test_what_other_languages_write_gets_a_hint(here, formula, hint):
+    text = SMALL.replace("x**2 - 5*y**2", formula)
+    (here / "scene.toml").write_text(text, encoding="utf-8")
+    code, said = invoked("solve", "scene.toml")
+    assert (code, hint in said, "scene.toml:15" in said) == (2, True, True), said
+
+
+def test_a_solve_writes_whole_files_or_none(here, monkeypatch):
+    """A disk that fills up while the second file is written leaves no half of it."""
+
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(np, "savez_compressed", full)
+    code, said = invoked("solve", "scene.toml")
+    assert code == 2
+    assert "No space left" in said
+    assert not [p for p in here.iterdir() if p.suffix in (".npz", ".partial")]
