@@ -61,8 +61,8 @@ def test_fields_and_bonds_do_not_depend_on_place_and_unit(kind, surface):
         if mine.ended is not None:
             np.testing.assert_array_equal(theirs.ended.particle, mine.ended.particle)
             np.testing.assert_array_equal(theirs.ended.offset, mine.ended.offset)
-        # Corners and cells are known from the body's own centre, and what else is drawn on shares of
-        # a cell is put back there: no rounding of where it all stands is left.
+        # Corners and cells are known from the body's own centre, and what else is drawn on shares
+        # of a cell is put back there: no rounding of where it all stands is left.
         rounding = np.finfo(float).eps * np.abs(place).max() / unit
         error = np.abs(other.displacement / unit - first.displacement).max() / size
         assert error < 1e-11, (place, unit)
