@@ -1,7 +1,8 @@
 """Whatever a scene asks: an answer that is finite, or one line that says why there is none.
 
-No warning of NumPy's and no raw error reaches a user. Some 2,000 scenes were tried once; a
-dozen of each kind are tried every time.
+No warning of NumPy's and no raw error reaches a user. 1,400 scenes were tried once, and 2,000 more
+with inclusions, polar solids, thickness and combined shapes; a dozen of each kind are tried every
+time.
 """
 
 import pytest

@@ -139,3 +139,40 @@ def test_an_edge_crack_is_open_at_its_mouth(surface, mouth):
     solution = scene.solve(tolerance=1e-9)
     k1, _ = sif.interaction_integral(solution, (0.0, 0.0), 0.0, 0.4, inner=0.4)
     assert k1 / np.sqrt(np.pi * 0.5) == pytest.approx(2.8246, rel=0.03)
+
+
+def radial_crack(degrees, cells):
+    """K_I/σ√πa of a crack from a circular hole in a round plate that is pulled evenly."""
+    angle, length = np.radians(degrees), 0.75
+    ray = np.array([np.cos(angle), np.sin(angle)])
+    tip = tuple((1 + length) * ray)
+
+    def nearest(x0):
+        return lambda x, y: np.arange(len(x)) == np.argmin((x - x0) ** 2 + (y - 1e-3) ** 2)
+
+    scene = Scene(
+        disc(3.0) - disc(1.0), 1 / cells, ElasticTensor.isotropic(1.0, 0.2),
+        [Support.where(nearest(-2.0), displacement=0.0), Support.where(nearest(2.0), u2=0.0)],
+        [Load.stress((1.0, 1.0, 0.0), where=lambda x, y: np.hypot(x, y) > 2.0)], m=3,
+        surface="extrapolated", cracks=[Crack(tuple(0.9 * ray), tip)],
+    )  # fmt: skip
+    KI, KII = sif.interaction_integral(scene.solve(1e-9), tip, angle, 0.6)
+    return np.array([KI, KII]) / np.sqrt(np.pi * length)
+
+
+def test_a_radial_crack_does_not_know_its_angle():
+    """The tip's place in its cell: 0.34 % here, ±0.17 % over twelve angles at 20 cells a radius."""
+    K = np.array([radial_crack(degrees, 14) for degrees in (10.0, 33.0)])
+    assert K[0, 0] == pytest.approx(K[1, 0], rel=5e-3)
+    # The mean of those twelve.
+    assert K[:, 0] == pytest.approx(1.876, rel=1e-2)
+    assert np.abs(K[:, 1]).max() < 0.01
+
+
+@pytest.mark.slow
+def test_a_radial_crack_does_not_know_any_angle():
+    angles = (0, 4, 8, 10, 12, 16, 20, 25, 30, 35, 40, 45)
+    K = np.array([radial_crack(degrees, 20) for degrees in angles])
+    # Measured -0.15 … +0.17 %.
+    assert K[:, 0] == pytest.approx(K[:, 0].mean(), rel=3e-3)
+    assert np.abs(K[:, 1]).max() < 0.01
