@@ -324,7 +324,13 @@ CASES = (
                 {Level.QUICK: (20,)} | _LONG,
                 warm.conduction,
             ),
-            Method("bond/potentials", "bond", partial(leads, True), _LONG, warm.conduction),
+            Method(
+                "bond/potentials",
+                "bond",
+                partial(leads, True),
+                {Level.QUICK: (20,)} | _LONG,
+                warm.conduction,
+            ),
             Method(
                 "bond/heat",
                 "bond",

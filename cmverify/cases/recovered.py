@@ -57,6 +57,11 @@ def elastic(n: int) -> Measurement:
     spin = np.full(whole.sum(), 0.5 * (GRADIENT[1, 0] - GRADIENT[0, 1]))
     energy = np.full(whole.sum(), 0.5 * strain @ voigt @ strain)
 
+    # What fits cubics is exact in the body too, where no surface is in its window.
+    places = [(0.07, 0.1), (-0.12, 0.03)]
+    symmetric = np.broadcast_to(0.5 * (GRADIENT + GRADIENT.T), (len(places), 2, 2))
+    cells = solution.cells
+
     def error(found: Array, exact: Array) -> float:
         return relative_l2(found[whole].reshape(-1), exact.reshape(-1))
 
@@ -69,6 +74,13 @@ def elastic(n: int) -> Measurement:
             "gradient": error(recovery.displacement_gradient(solution), gradient),
             "macrorotation": error(recovery.macrorotation(solution), spin),
             "rotation": error(solution.rotation, spin),
+            "strain at places": relative_l2(
+                recovery.edge_strain(solution, places).reshape(-1), symmetric.reshape(-1)
+            ),
+            "corners of cells": relative_l2(
+                cells.at_corners(solution.displacement).reshape(-1),
+                (cells.corners @ GRADIENT.T).reshape(-1),
+            ),
         },
         statistics=adapters.solver_statistics(solution.statistics),
     )
@@ -165,12 +177,16 @@ def cut(n: int) -> Measurement:
         np.array([family.fraction[family.offsets[:, 1] >= h].sum() for h in height[near]])
         / family.fraction.sum()
     )
+    # Corners in a row that both cells above and both below are parted from: one a face.
+    inner = 2 * int(np.floor(0.4 * n - 0.5)) + 1
+    corners = len(solution.cells.corners) - ((n + 1) ** 2 + inner)
     beyond = damage[(np.abs(x) < 0.3) & (height > M + 1)]
     return Measurement(
         solution.statistics.unknowns,
         {
             "damage": relative_l2(damage[near], wanted),
             "damage beyond a family": float(np.abs(beyond).max()),
+            "corners along a crack": float(abs(corners)),
         },
     )
 
@@ -187,6 +203,9 @@ QUANTITIES = {
     "flux": "flux, consistent half sum",
     "flux by Eq. 170": "flux over the hotter neighbours",
     "temperature": "temperature",
+    "strain at places": "strain by the cubic that `edge_strain` fits, at places in the body",
+    "corners of cells": "displacement carried to the corners of the particles' cells",
+    "corners along a crack": "corners of cells that a crack parts, too many or too few",
     "damage": "share of cut bonds beside a crack (Eq. 105), counted by heights",
     "damage beyond a family": "damage of particles that no cut bond reaches",
 }
@@ -200,11 +219,13 @@ METHODS = {
             "gradient",
             "macrorotation",
             "rotation",
+            "strain at places",
+            "corners of cells",
         ),
     ),
     "bond/loaded": (loaded, ("displacement", "turned by a couple")),
     "bond/conductive": (conductive, ("flux", "flux by Eq. 170", "energy", "temperature")),
-    "bond/cut": (cut, ("damage", "damage beyond a family")),
+    "bond/cut": (cut, ("damage", "damage beyond a family", "corners along a crack")),
 }
 
 CASES = (

@@ -72,6 +72,22 @@ def _load(alter: Callable[[Any], Any]) -> Callable[[Function], Function]:
     return change
 
 
+def _without_rims(right: Function) -> Function:
+    """Bonds between a lead and its surroundings that do not end at its rim."""
+    return lambda scene, bonds, moduli: bonds
+
+
+def _inside_the_body(right: Function) -> Function:
+    """Neighbours whose bond is cut are taken for joined."""
+
+    def wrong(bonds: Any, offset: tuple[int, int]) -> Any:
+        number = np.asarray(bonds.lattice.number())
+        rows, columns = bonds.lattice.rows_columns
+        return number[rows + offset[1], columns + offset[0]] >= 0
+
+    return wrong
+
+
 def _thinner(right: Function) -> Function:
     def wrong(cls: Any, cells: float, **values: Any) -> Any:
         return right(cls, max(cells - 1.0, 0.5), **values)
@@ -421,6 +437,20 @@ FAULTS = (
     Fault(
         "macrorotation of the other sign", "solver.recovery.macrorotation", scaled(-1.0), "recovery"
     ),
+    Fault("strain at places + 1 %", "solver.edge_recovery.edge_strain", scaled(1.01), "recovery"),
+    Fault(
+        "values at corners of cells + 1 %",
+        "solver.bonds.cells.Cells.at_corners",
+        scaled(1.01),
+        "recovery",
+    ),
+    Fault(
+        "cells joined across cracks",
+        "solver.bonds.cells._whole",
+        _inside_the_body,
+        "recovery",
+    ),
+    Fault("leads without a rim", "solver.problem.leads.rimmed", _without_rims, "leads"),
     # ---- fracture -----------------------------------------------------------------------
     Fault(
         "critical energies + 2 %",

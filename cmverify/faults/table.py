@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import multiprocessing
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -132,11 +133,23 @@ def _search(
     return found
 
 
-def _workers(jobs: int) -> ProcessPoolExecutor:
-    """Processes started afresh, because the limits of threads are read at import."""
+@contextmanager
+def _workers(jobs: int) -> Iterator[ProcessPoolExecutor]:
+    """Processes started afresh, because the limits of threads are read at import.
+
+    Who interrupts the search does not wait for what is being tried, nor for all that is planned.
+    """
     os.environ.update(thread_environment(1))
     context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(jobs, context, initializer=hold, initargs=(os.getpid(),))
+    pool = ProcessPoolExecutor(jobs, context, initializer=hold, initargs=(os.getpid(),))
+    try:
+        yield pool
+    except BaseException:
+        pool.shutdown(wait=False, cancel_futures=True)
+        for child in multiprocessing.active_children():
+            child.kill()
+        raise
+    pool.shutdown()
 
 
 def read_map() -> Map:
