@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -152,6 +152,16 @@ class LinePlot:
     reference_label: str = "closed form"
 
 
+class Setting(NamedTuple):
+    """With what a scene was solved: a place in the validity matrix."""
+
+    physics: str
+    calibration: str
+    surface: str
+    m: float
+    influence: str
+
+
 @dataclass(frozen=True)
 class Measurement:
     """What one method gives at one resolution.
@@ -171,6 +181,8 @@ class Measurement:
     warnings : tuple of str
         What the solver said of the scenes that it was asked, each sentence once. The harness
         listens (`cmverify.run.worker`): no method needs to hand them on.
+    scenes : tuple of Setting
+        With what its scenes were solved, each once; the harness listens to these too.
     """
 
     unknowns: int
@@ -181,6 +193,7 @@ class Measurement:
     lines: tuple[LinePlot, ...] = ()
     stages: Stages | None = None
     warnings: tuple[str, ...] = ()
+    scenes: tuple[Setting, ...] = ()
 
     @property
     def total_seconds(self) -> float:

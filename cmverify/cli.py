@@ -268,10 +268,25 @@ def precision(
     names: Names = None,
     quantity: Annotated[str | None, typer.Option(help="Instead of each case's own.")] = None,
     out: Folder = Path("report"),
+    measure: Annotated[
+        bool, typer.Option("--measure", help="Take errors and, apart and alone, times.")
+    ] = False,
+    level: Annotated[Level, typer.Option(help="With --measure: how fine.")] = Level.QUICK,
+    repeats: Annotated[int, typer.Option(min=3, help="Most repetitions of a time.")] = 5,
+    method: Annotated[list[str] | None, typer.Option(help="With --measure: only these.")] = None,
+    resolution: Annotated[int | None, typer.Option(min=1, help="One, not the level's.")] = None,
 ) -> None:
-    """Show error against time of a finished run; ★ marks what nothing else beats."""
+    """Show error against time; ★ marks what nothing else beats.
+
+    Of a finished run, or measured anew: without names, the cases tagged work-precision. The
+    machine should have nothing else to do. Then `cmverify report` has a chapter of it.
+    """
     from cmverify.report import terminal
 
+    if measure:
+        _measure_precision(_select(names or ["work-precision"]), level, repeats, method or [],
+                           resolution, out)  # fmt: skip
+        return
     judged, info = _finished(out)
     wanted = {case.name for case in _select(names)}
     screen = console()
@@ -284,9 +299,78 @@ def precision(
             shown += 1
     if not shown:
         _refuse(f"{out} has no timed case of that name or quantity")
-    screen.print(
-        f"Level {info.level}, {info.jobs} × {info.threads} threads. {info.command}", soft_wrap=True
-    )
+    made = f"Level {info.level}, {info.jobs} × {info.threads} threads. {info.command}"
+    screen.print(made, soft_wrap=True)
+
+
+def _measure_precision(  # type: ignore[no-untyped-def]
+    cases, level: Level, repeats: int, only: list[str], resolution: int | None, out: Path
+) -> None:
+    import datetime
+    import os
+
+    from cmverify.report import precision_chapter, terminal
+    from cmverify.run import environment, folder
+    from cmverify.run.threads import available_cores
+    from cmverify.studies import precision as study
+
+    known = {method.name for case in cases for method in study.methods_of(case)}
+    if strange := sorted(set(only) - known):
+        _refuse(f"no method is called {', '.join(strange)}; known: {', '.join(sorted(known))}")
+    try:
+        folder.check(out)
+    except folder.FolderError as error:
+        _refuse(str(error))
+    screen = console()
+    started = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
+    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
+    tell = (lambda text: None) if manner().quiet else (lambda text: screen.print(f"{text} …"))
+    points, refused = study.measure(cases, level, repeats, only, resolution, tell)
+    import numba
+
+    found = precision_chapter.Study(
+        points, refused, str(level), numba.get_num_threads(), available_cores(), load, started,
+        environment.describe().as_dict(),
+    )  # fmt: skip
+    terminal.print_study(screen, points)
+    for said in refused:
+        screen.print(f"not measured: {said}", soft_wrap=True)
+    if found.busy:
+        screen.print(
+            f"The machine was busy (load {load:.1f}): these times say little.", style="red"
+        )
+    if only or resolution:
+        return  # a point measured again, not a study
+    precision_chapter.write(found, out)
+    screen.print(f"Points: {out / 'precision.csv'}; the chapter: cmverify report --out {out}",
+                 soft_wrap=True)  # fmt: skip
+
+
+@app.command()
+def validity(
+    out: Folder = Path("report"),
+    json: Annotated[bool, typer.Option("--json", help="Print it as JSON.")] = False,
+    gaps: Annotated[bool, typer.Option("--gaps", help="Only what nothing covers.")] = False,
+) -> None:
+    """Show which physics, calibration, treatment and m the checks of a finished run cover."""
+    from cmverify.cases import registry
+    from cmverify.console import columns, show
+    from cmverify.report import summary
+    from cmverify.report import validity as coverage
+
+    judged, info = _finished(out)
+    found = coverage.matrix(summary.beside(registry.all_cases(), judged, info, out))
+    if json:
+        from json import dumps
+
+        typer.echo(dumps(coverage.as_data(found), indent=1, ensure_ascii=False))
+        return
+    lines = [line for line in coverage.lines(found) if not gaps or line[4] == "0"]
+    names = ("physics", "calibration", "treatment", "m", "checks", "cases", "narrowest bound")
+    prose = ("cases", "narrowest bound")
+    screen = console()
+    show(screen, columns(*names, right=("m", "checks"), prose=prose), lines, keys=2)
+    screen.print(f"{found.covered} of {found.places} places are covered.")
 
 
 @app.command()

@@ -48,6 +48,7 @@ def speak(quiet: bool = False, verbose: bool = False) -> None:
     if verbose:
         handler = logging.StreamHandler()
         handler.set_name("cmverify")
+        handler.setLevel(logging.INFO)
         handler.setFormatter(logging.Formatter("%(name)s: %(message)s"))
         logger.addHandler(handler)
         logger.setLevel(logging.INFO)

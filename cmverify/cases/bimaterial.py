@@ -208,7 +208,7 @@ CASES = (
         title="A disc ten times as stiff in a plate under a uniform stress",
         section="Sect. 2, beyond the paper",
         equations=(),
-        tags=("bimaterial", "elasticity"),
+        tags=("bimaterial", "elasticity", "work-precision"),
         shows=(
             "Displacements are those of Goodier's closed form at second order, and the stress in "
             "the disc is uniform, as Eshelby's is."

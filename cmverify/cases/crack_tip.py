@@ -435,7 +435,7 @@ def _case(mode: str, problem: Problem, bounds: dict[int, float], shows: str) -> 
         section="Sect. 2.3.1",
         equations=("Eqs. 79–83", "Eq. 85"),
         figures=("Fig. 6", "Fig. 7", "Fig. 8", "Fig. 9"),
-        tags=("crack-tip", "elasticity", "fracture"),
+        tags=("crack-tip", "elasticity", "fracture", *(["work-precision"] if mode == "I" else [])),
         shows=shows,
         methods=methods(problem),
         checks=tuple(checks),

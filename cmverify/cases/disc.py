@@ -304,7 +304,7 @@ CASES = (
         title="Heat in an anisotropic disc: exp(x₁ − 2x₂) cos x₂",
         section="Sect. 4.3.1",
         equations=("Eq. 168",),
-        tags=("disc", "conduction"),
+        tags=("disc", "conduction", "work-precision"),
         shows=(
             "On a field that no polynomial represents, the calibrated lattice converges at second "
             "order; the continuum calibration stalls."

@@ -12,7 +12,7 @@ from typing import Any
 
 from cmverify.case import Case, LinePlot, Measurement, nothing_to_compile
 from cmverify.judge import precision
-from cmverify.report import opening, pages, previous
+from cmverify.report import opening, pages, precision_chapter, previous, validity
 from cmverify.report.numbers import Results
 from cmverify.report.picture import Picture
 from cmverify.report.summary import CaseResult, Row, RunInfo, as_json, table, tally
@@ -62,12 +62,30 @@ def build(summary: Sequence[CaseResult], info: RunInfo, folder: Path) -> Path:
             pictures=opening.pictures(summary, pictures),
             methods=sorted({name for r in summary for name in r.outcomes}),
             before=_before(summary, info, folder),
+            **_precision(folder),
+            validity=covered if (covered := validity.matrix(summary)).covered else None,
             beside=[(name, text) for name, text in BESIDE if (folder / name).is_file()],
         )
     )
     path = folder / "index.html"
     write_text(path, page)
     return path
+
+
+def _precision(folder: Path) -> dict[str, Any]:
+    """The study of precision in a folder and its sections; why there is none, or None."""
+    from cmverify.cases import registry
+
+    try:
+        study = precision_chapter.read(folder)
+    except ValueError as error:
+        return {"precision": str(error), "precise": []}
+    cases = {case.name: case for case in registry.all_cases()}
+    if study is None or not all(p.case in cases for p in study.points):
+        return {"precision": None, "precise": []}
+    titles = {name: case.title for name, case in cases.items()}
+    errors = {name: case.quantities[case.primary] for name, case in cases.items()}
+    return {"precision": study, "precise": precision_chapter.sections(study, titles, errors)}
 
 
 def _before(summary: Sequence[CaseResult], info: RunInfo, folder: Path) -> Any:

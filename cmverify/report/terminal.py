@@ -16,6 +16,7 @@ from cmverify.exchange.comparison import Comparison
 from cmverify.judge import precision
 from cmverify.report.summary import INCIDENTS, CaseResult, Row, table, tally
 from cmverify.report.wording import tidy
+from cmverify.studies import precision as study
 
 
 def print_cases(screen: Console, cases: Sequence[Case]) -> None:
@@ -200,3 +201,19 @@ def print_precision(screen: Console, result: CaseResult, quantity: str | None = 
     right = ("spacing", "unknowns", "seconds", "error", "order")
     title = f"{case.name}: {case.quantities[quantity or case.primary]}"
     show(screen, columns("method", *right, "", right=right), rows, title=title)
+
+
+def print_study(screen: Console, points: Sequence[study.Point]) -> None:
+    """Work against precision with its spread, case by case."""
+    right = ("at", "error", "median (s)", "quartiles (s)", "unknowns", "memory (MB)")
+    head = columns("method", *right, "", right=right)
+    for name in dict.fromkeys(p.case for p in points):
+        rows = [
+            (p.method, str(p.resolution), f"{p.error:.2e}", f"{p.seconds:.4f}",
+             f"{p.fast:.4f} … {p.slow:.4f}", str(p.unknowns), f"{p.memory / 1e6:.1f}",
+             {"front": "★", "perhaps": "☆", "beaten": ""}[p.standing])
+            for p in points
+            if p.case == name
+        ]  # fmt: skip
+        show(screen, head, rows, title=name)
+        screen.print()

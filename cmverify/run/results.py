@@ -30,6 +30,7 @@ from cmverify.case import (
     LinePlot,
     Measurement,
     Outcome,
+    Setting,
     Stage,
     Stages,
 )
@@ -217,6 +218,7 @@ def _describe(m: Measurement, arrays: dict[str, np.ndarray]) -> dict[str, Any]:
         "seconds": dict(m.seconds),
         "statistics": dict(m.statistics),
         "warnings": list(m.warnings),
+        "scenes": [list(setting) for setting in m.scenes],
     }
     if m.fields is not None:
         arrays["points"] = m.fields.points
@@ -283,4 +285,5 @@ def _restore(data: dict[str, Any], arrays: dict[str, Any]) -> Measurement:
         lines=tuple(lines),
         stages=stages,
         warnings=tuple(data.get("warnings", ())),
+        scenes=tuple(Setting(*entry) for entry in data.get("scenes", ())),
     )

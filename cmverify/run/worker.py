@@ -12,7 +12,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from weakref import WeakSet
 
-from cmverify.case import Case, Failed, Measurement, Method, Outcome
+from cmverify.case import Case, Failed, Measurement, Method, Outcome, Setting
 from cmverify.run import results, unfinished
 from cmverify.run.lifeline import hold
 
@@ -29,11 +29,15 @@ def warm_up(method: Method) -> None:
 def measure(method: Method, resolution: int) -> Measurement:
     """Run a method with its compiled code warm; raises what the method raises."""
     warm_up(method)
-    with cautions() as said:
+    with cautions() as said, settings() as solved:
         measurement = method.run(resolution)
     if not isinstance(measurement, Measurement):
         raise TypeError(f"{method.name} returned {type(measurement).__name__}, not a Measurement")
-    return replace(measurement, warnings=tuple(dict.fromkeys((*measurement.warnings, *said))))
+    return replace(
+        measurement,
+        warnings=tuple(dict.fromkeys((*measurement.warnings, *said))),
+        scenes=tuple(dict.fromkeys((*measurement.scenes, *solved))),
+    )
 
 
 class _Listener(logging.Handler):
@@ -58,6 +62,37 @@ def cautions() -> Iterator[list[str]]:
         yield listener.heard
     finally:
         logger.setLevel(level)
+        logger.removeHandler(listener)
+
+
+class _Scenes(logging.Handler):
+    """Keeps with what the scenes that it hears of are solved."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.DEBUG)
+        self.heard: list[Setting] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        if isinstance(record.args, tuple):
+            physics, calibration, surface, m, influence = record.args
+            self.heard.append(
+                Setting(str(physics), str(calibration), str(surface), float(str(m)), str(influence))
+            )
+
+
+@contextmanager
+def settings() -> Iterator[list[Setting]]:
+    """With what the solver's scenes are solved within the block."""
+    logger, listener = logging.getLogger("solver.scenes"), _Scenes()
+    level, propagate = logger.level, logger.propagate
+    logger.addHandler(listener)
+    logger.setLevel(logging.DEBUG)
+    logger.propagate = False  # nobody else has asked for it
+    try:
+        yield listener.heard
+    finally:
+        logger.setLevel(level)
+        logger.propagate = propagate
         logger.removeHandler(listener)
 
 

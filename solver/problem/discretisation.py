@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass, replace
 from functools import cached_property
 from time import perf_counter
@@ -21,6 +22,9 @@ from . import constraints as constraints_of
 from .conditions import particle_volumes
 from .constraints import Constraints
 from .description import Description
+
+#: Told of every scene that is discretised, at level DEBUG: who judges asks what was solved.
+_SCENES = logging.getLogger("solver.scenes")
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +108,7 @@ class Discretisation:
         cls, scene: Description, sharp_tips: bool, constrained: bool, free: bool
     ) -> Discretisation:
         begun = perf_counter()
+        _tell(scene)
         family = scene.family()
         each, stability = inclusions.solids(scene, family)
         if not constrained and any(support.constrains for support in scene.supports):
@@ -309,3 +314,13 @@ class Discretisation:
         values[:, self.operator.active] = x.reshape(self.operator.components, -1)
         values[self.prescribed] = self.values[self.prescribed]
         return values
+
+
+def _tell(scene: Description) -> None:
+    """Say with what a scene is solved: physics, calibration, surface, m, influence."""
+    if _SCENES.isEnabledFor(logging.DEBUG):
+        influence = scene.influence if isinstance(scene.influence, str) else scene.influence.name
+        _SCENES.debug(
+            "%s, %s, %s, m = %g, %s",
+            scene.material.physics.name, scene.calibration, scene.surface, scene.m, influence,
+        )  # fmt: skip

@@ -256,7 +256,7 @@ CASES = (
         title="Free plates against finite elements",
         section="Sect. 2.1",
         equations=("Eq. 35", "Eq. 91", "Eq. 130"),
-        tags=("modes",),
+        tags=("modes", "work-precision"),
         shows=(
             "In-plane modes of free isotropic and orthotropic plates, turned by 0°, 30° and 45°, "
             "with a hole and with a crack, come within 0.2 % of quadratic finite elements."

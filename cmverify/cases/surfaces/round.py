@@ -269,7 +269,12 @@ def _case(shape: Shape, solid: str) -> Case:
         name=f"{shape}-tractions-{solid}",
         title=f"{what} under tractions, {solid}",
         section="Sect. 2.2.1 (surface correction)",
-        tags=("surface", "elasticity", *(("hole",) if shape == "hole" else ())),
+        tags=(
+            "surface",
+            "elasticity",
+            *(("hole",) if shape == "hole" else ()),
+            *(("work-precision",) if (shape, solid) == ("hole", "anisotropic") else ()),
+        ),
         shows=shows[shape],
         methods=bodies.methods(
             partial(loaded, Problem(shape, solid)), other=3 if solid == "anisotropic" else None

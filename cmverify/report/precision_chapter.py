@@ -1,0 +1,128 @@
+"""The chapter on work and precision: what `cmverify precision --measure` has left in a folder."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cmverify.report.picture import Picture
+from cmverify.run.results import write_text
+from cmverify.studies.precision import Point, as_csv, seconds_to
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+NAME, FORMAT = "precision.json", 1
+
+
+@dataclass(frozen=True)
+class Study:
+    """Points with what one must know to trust or repeat them.
+
+    `load` is the machine's load average (processes that want to run) before the timing pass.
+    """
+
+    points: list[Point]
+    refused: list[str]
+    level: str
+    threads: int
+    cores: int
+    load: float
+    started: str
+    environment: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def busy(self) -> bool:
+        """Whether others were at work while times were taken: then they say little."""
+        return self.load > 0.5 * self.cores
+
+
+def write(study: Study, folder: Path) -> None:
+    """Write precision.json and precision.csv."""
+    data = {"format": FORMAT, **asdict(study)}
+    write_text(folder / NAME, json.dumps(data, indent=1, ensure_ascii=False))
+    write_text(folder / "precision.csv", as_csv(study.points))
+
+
+def read(folder: Path) -> Study | None:
+    """The study of a folder; None if there is none.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read.
+    """
+    path = folder / NAME
+    if not path.is_file():
+        return None
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        if data.pop("format") != FORMAT:
+            raise ValueError(f"it is not of format {FORMAT}")
+        return Study(**{**data, "points": [Point(**point) for point in data["points"]]})
+    except (KeyError, TypeError, ValueError, OSError) as error:
+        raise ValueError(f"{path} is no study of precision: {error}") from error
+
+
+def sections(study: Study, titles: dict[str, str], quantities: dict[str, str]) -> list[Any]:
+    """What the template shows of each case: picture, points, and the time to two errors."""
+    found = []
+    for name in dict.fromkeys(p.case for p in study.points):
+        points = [p for p in study.points if p.case == name]
+        caption = "Bars are quartiles of repeated times; points that nothing beats are filled."
+        alt = "; ".join(f"{p.method}: {p.error:.1e} in {p.seconds:.2g} s" for p in points)
+        picture = Picture.drawn(
+            f"precision-{name}", "svg", _figure(points, quantities[name]), caption, alt
+        )
+        fem = sorted({p.error for p in points if p.kind == "fem"})
+        targets = [fem[-1], fem[0]] if fem else [min(p.error for p in points)]
+        found.append(
+            {
+                "name": name,
+                "title": titles[name],
+                "quantity": quantities[name],
+                "picture": picture,
+                "points": points,
+                "reached": [
+                    (e, seconds_to(points, e * (1 + 1e-9))) for e in dict.fromkeys(targets)
+                ],
+            }
+        )
+    return found
+
+
+def _figure(points: list[Point], quantity: str) -> Figure:
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    from cmverify.report import figures, style
+
+    with matplotlib.rc_context(style.RC):
+        figure = Figure(figsize=figures.NARROW)
+        axis = figure.subplots()
+        for index, name in enumerate(dict.fromkeys(p.method for p in points)):
+            series = sorted((p for p in points if p.method == name), key=lambda p: p.resolution)
+            look = style.of_method(name, index)
+            errors = [max(p.error, 1e-17) for p in series]
+            spread = [
+                [p.seconds - p.fast for p in series],
+                [p.slow - p.seconds for p in series],
+            ]
+            axis.errorbar(
+                [p.seconds for p in series], errors, xerr=spread, label=name, elinewidth=1.0,
+                **{**look, "markerfacecolor": "white"},
+            )  # fmt: skip
+            front = [p for p in series if p.standing == "front"]
+            axis.plot(
+                [p.seconds for p in front], [max(p.error, 1e-17) for p in front], linestyle="none",
+                color=look["color"], marker=look["marker"], markersize=look["markersize"],
+            )  # fmt: skip
+        axis.set(xscale="log", yscale="log", title="Error against time (lower left is better)")
+        axis.set_xlabel("set-up and solve (s, median)")
+        axis.set_ylabel(quantity[:60])
+        figures._decades(axis.xaxis, "s")
+        figures._decades(axis.yaxis)
+        figures._legend_below(axis)
+        return figure

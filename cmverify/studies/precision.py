@@ -1,0 +1,266 @@
+"""Work against precision: what an error costs, in time, memory and unknowns.
+
+Two passes that do not disturb each other. The error pass measures each point once, and the memory
+it takes. The timing pass then repeats set-up and solve alone, one point after the other in this
+process, with compiled code warm; times are medians, with the quartiles as their spread. A
+bond method is varied one choice at a time (calibration, m, surface, tolerance) on the problem that
+its case poses to other programs.
+"""
+
+from __future__ import annotations
+
+import csv
+import gc
+import io
+import math
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from cmverify.case import Case, Level, Measurement, Method
+
+if TYPE_CHECKING:
+    from cmverify.exchange.statement import Pose
+
+#: Cases that carry it are measured if none is named.
+TAG = "work-precision"
+#: What is changed, one at a time, on the bond method of a posed problem.
+VARIANTS: tuple[tuple[str, dict[str, Any], float], ...] = (
+    ("m = 3", {"m": 3}, 1e-10),
+    ("m = 7", {"m": 7}, 1e-10),
+    ("tolerance 1e-4", {}, 1e-4),
+    ("tolerance 1e-6", {}, 1e-6),
+)
+#: Seconds after which a point is repeated no more, and the fewest repetitions.
+ENOUGH, FEWEST = 2.0, 3
+#: Seconds between looks at the memory.
+_LOOK = 2e-3
+
+Standing = Literal["front", "perhaps", "beaten"]
+
+
+@dataclass(frozen=True)
+class Point:
+    """One method at one resolution.
+
+    Attributes
+    ----------
+    error : of the case's main figure
+    seconds : median of set-up and solve, s
+    fast, slow : its quartiles, s
+    repeats : times it was measured
+    compiling : seconds that the warm-up took, compilation or loading of compiled code included
+    memory : bytes by which the process grew at most meanwhile
+    standing : "front" if nothing as accurate is quicker, "beaten" if something is, beyond the
+        spread of both; "perhaps" if the spreads do not tell
+    command : measures it again
+    """
+
+    case: str
+    method: str
+    kind: str
+    resolution: int
+    unknowns: int
+    error: float
+    seconds: float
+    fast: float
+    slow: float
+    repeats: int
+    compiling: float
+    memory: int
+    command: str
+    standing: Standing = "perhaps"
+
+
+def methods_of(case: Case) -> tuple[Method, ...]:
+    """The case's own, and its bond method varied where the case poses a static problem."""
+    if not case.poses:
+        return case.methods
+    pose = case.poses[0]
+    own = case.method(pose.method)
+    varied = tuple(
+        Method(
+            f"{own.name}, {name}", "bond", partial(vary, case, pose, changes, tolerance),
+            own.resolutions, own.warm_up,
+        )
+        for name, changes, tolerance in VARIANTS
+        if own.kind == "bond" and _static(pose, own.coarsest)
+    )  # fmt: skip
+    return (*case.methods, *varied)
+
+
+def _static(pose: Pose, n: int) -> bool:
+    target = pose.state(n).targets[0]
+    return target.points is not None and target.times is None and target.key in _FIELDS
+
+
+#: Fields of a static solution that targets are judged by.
+_FIELDS = ("displacement", "temperature", "potential")
+
+
+def vary(case: Case, pose: Pose, changes: dict[str, Any], tolerance: float, n: int) -> Measurement:
+    """Solve the problem that a case poses with some of the scene changed.
+
+    Raises
+    ------
+    ValueError
+        If the changed scene has no particle where an error is asked.
+    """
+    from cmverify.cases.common import adapters
+
+    statement = pose.state(n)
+    target = statement.targets[0]
+    solution = replace(statement.scene, **changes).solve(tolerance=tolerance)
+    assert target.points is not None
+    places = _places(solution.points, target.points, statement.scene.spacing)
+    values = np.asarray(getattr(solution, target.key))[places]
+    return Measurement(
+        unknowns=solution.statistics.unknowns,
+        quantities={case.primary: target.error(values)},
+        seconds=adapters.solver_seconds(solution.statistics),
+    )
+
+
+def _places(points: np.ndarray, wanted: np.ndarray, spacing: float) -> np.ndarray:
+    """Indices of the particles at these places."""
+    known = {tuple(key): i for i, key in enumerate(np.rint(points / spacing * 8).astype(int))}
+    try:
+        return np.array([known[tuple(k)] for k in np.rint(wanted / spacing * 8).astype(int)])
+    except KeyError:
+        raise ValueError("the changed scene has other particles than the posed one") from None
+
+
+def measure(
+    cases: Sequence[Case],
+    level: Level,
+    repeats: int = 5,
+    only: Sequence[str] = (),
+    resolution: int | None = None,
+    listen: Callable[[str], None] = lambda text: None,
+) -> tuple[list[Point], list[str]]:
+    """Both passes for every method of these cases at a level.
+
+    Parameters
+    ----------
+    repeats : int
+        Most repetitions of a time; slow points are repeated `FEWEST` times.
+    only : sequence of str
+        Names of methods; all of them for none.
+    resolution : int, optional
+        One, instead of those of the level.
+
+    Returns
+    -------
+    points : list of Point
+    refused : list of str
+        Methods that raised, with what they said.
+    """
+    from cmverify.run import worker
+
+    plan = [
+        (case, method, n)
+        for case in cases
+        for method in methods_of(case)
+        if not only or method.name in only
+        for n in ((resolution,) if resolution else method.resolutions.get(level, ()))
+    ]
+    listen(f"{len(plan)} points: errors and memory")
+    found: list[tuple[Case, Method, int, Measurement, float, int]] = []
+    refused = []
+    for case, method, n in plan:
+        begun = time.perf_counter()
+        worker.warm_up(method)
+        compiling = time.perf_counter() - begun
+        try:
+            with growth() as grown:
+                outcome = worker.measure(method, n)
+        except Exception as error:
+            refused.append(f"{case.name} {method.name} {case.length}/{n}: {error}")
+            continue
+        if outcome.total_seconds > 0 and case.primary in outcome.quantities:
+            found.append((case, method, n, outcome, compiling, grown[0]))
+    listen("times, alone on this process")
+    points = []
+    for case, method, n, outcome, compiling, memory in found:
+        times = _times(method, n, repeats)
+        fast, middle, slow = np.percentile(times, (25, 50, 75))
+        points.append(
+            Point(
+                case.name, method.name, method.kind, n, outcome.unknowns,
+                float(outcome.quantities[case.primary]), float(middle), float(fast), float(slow),
+                len(times), compiling, memory,
+                f'cmverify precision {case.name} --measure --method "{method.name}" '
+                f"--resolution {n}",
+            )
+        )  # fmt: skip
+    return judged(points), refused
+
+
+def _times(method: Method, n: int, repeats: int) -> list[float]:
+    times: list[float] = []
+    gc.collect()
+    while len(times) < FEWEST or (len(times) < repeats and sum(times) < ENOUGH):
+        times.append(method.run(n).total_seconds)
+    return times
+
+
+@contextmanager
+def growth() -> Iterator[list[int]]:
+    """By how many bytes the process grows at most within the block, looked at every 2 ms."""
+    import psutil
+
+    process = psutil.Process()
+    gc.collect()
+    before, most, done = process.memory_info().rss, [0], threading.Event()
+
+    def watch() -> None:
+        while not done.wait(_LOOK):
+            most[0] = max(most[0], process.memory_info().rss - before)
+
+    watcher = threading.Thread(target=watch, daemon=True)
+    watcher.start()
+    try:
+        yield most
+    finally:
+        done.set()
+        watcher.join()
+
+
+def judged(points: Iterable[Point]) -> list[Point]:
+    """The same points with their standing among those of their case."""
+    known = list(points)
+    found = []
+    for p in known:
+        rivals = [q for q in known if q.case == p.case and q is not p and q.error <= p.error]
+        standing: Standing = "front"
+        if any(q.slow < p.fast for q in rivals):
+            standing = "beaten"
+        elif any(q.fast < p.slow for q in rivals):
+            standing = "perhaps"
+        found.append(replace(p, standing=standing))
+    return found
+
+
+def seconds_to(points: Iterable[Point], error: float) -> dict[str, tuple[float, float]]:
+    """Least median seconds of each method to an error or a better one, with that error."""
+    best: dict[str, tuple[float, float]] = {}
+    for p in points:
+        if p.error <= error and p.seconds < best.get(p.method, (math.inf, 0.0))[0]:
+            best[p.method] = (p.seconds, p.error)
+    return best
+
+
+def as_csv(points: Iterable[Point]) -> str:
+    """One line a point, with a header; SI units."""
+    stream = io.StringIO()
+    names = list(Point.__dataclass_fields__)
+    writer = csv.DictWriter(stream, names, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(asdict(p) for p in points)
+    return stream.getvalue()

@@ -1,0 +1,60 @@
+"""The matrix says what checks cover, and shows what they do not."""
+
+from dataclasses import replace
+
+from cmverify.case import Level, Method, Setting
+from cmverify.report import summary, validity
+from cmverify.report.build import build
+from cmverify.run.worker import measure
+from solver import ConductivityTensor, Scene, Support, rectangle
+from tests.cmverify.report.test_build import INFO, records
+from tests.cmverify.toy_registry import toy, trapezium
+
+VOLUME = Setting("elasticity", "lattice", "volume", 5.0, "constant")
+EXTRAPOLATED = Setting("heat conduction", "positive", "extrapolated", 2.5, "conical")
+
+
+def judged(*scenes, scale=1.0):
+    outcomes = {n: replace(trapezium(n, scale), scenes=scenes) for n in (10, 20)}
+    return summary.summarise([toy()], records(outcomes))
+
+
+def test_checks_count_where_their_scenes_are():
+    found = validity.matrix(judged(VOLUME))
+    assert found.covered == 1
+    cell = found.at(("elasticity", "lattice"), ("volume", "5"))
+    assert (cell.held, len(cell.verdicts), cell.cases) == (3, 3, ["toy"])
+    assert cell.narrowest.asked == "≤ 0.00085"
+    assert found.at(("elasticity", "lattice"), ("none", "5")) is None
+    assert found.places == 9 * 12
+
+
+def test_a_measurement_of_several_scenes_counts_for_each():
+    found = validity.matrix(judged(VOLUME, EXTRAPOLATED, scale=1.01))
+    other = found.at(("heat conduction", "positive"), ("extrapolated", "other"))
+    assert found.covered == 2
+    assert other.held == 0
+    empty = [line for line in validity.as_data(found) if line["held"] == "0"]
+    assert len(empty) == found.places - 2
+
+
+def test_the_page_shows_empty_places(tmp_path):
+    page = build(judged(VOLUME), INFO, tmp_path).read_text()
+    assert page.count("nothing covers this") == 9 * 12 - 1
+    assert "1 of 108" in page
+    assert "Validity" not in build(judged(), INFO, tmp_path).read_text()
+
+
+def test_a_measurement_knows_what_it_solved():
+    def solve(n):
+        for m in (3, 2, 3):
+            Scene(
+                rectangle(9.0, 9.0), 1.0, ConductivityTensor.isotropic(1.0), m=m,
+                supports=[Support.where(lambda x, y: abs(x) > 3.0, temperature=0.0)],
+            ).solve()  # fmt: skip
+        return trapezium(n)
+
+    scenes = measure(Method("m", "bond", solve, {Level.QUICK: (10,)}), 10).scenes
+    assert scenes == tuple(
+        Setting("heat conduction", "lattice", "volume", float(m), "constant") for m in (3, 2)
+    )

@@ -1,0 +1,92 @@
+"""Work against precision: two passes, a front that knows its uncertainty, a chapter."""
+
+import csv
+import json
+from dataclasses import replace
+
+import pytest
+from typer.testing import CliRunner
+
+from cmverify.case import Level
+from cmverify.cases import registry
+from cmverify.cli import app
+from cmverify.report import precision_chapter
+from cmverify.studies import precision
+from tests.cmverify.toy_registry import toy
+
+P = precision.Point("c", "a", "bond", 10, 9, 1e-3, 1.0, 0.9, 1.1, 5, 0.0, 0, "again")
+
+
+def standings(*points):
+    return [p.standing for p in precision.judged(points)]
+
+
+def test_the_front_knows_its_spread():
+    quicker = replace(P, method="b", seconds=0.5, fast=0.4, slow=0.6)
+    assert standings(P, quicker) == ["beaten", "front"]
+    close = replace(P, method="b", seconds=0.95, fast=0.85, slow=1.05)
+    assert standings(P, close) == ["perhaps", "perhaps"]
+    finer = replace(P, method="b", error=1e-4, seconds=9.0, fast=8.0, slow=10.0)
+    assert standings(P, finer) == ["front", "front"]
+    elsewhere = replace(quicker, case="d")
+    assert standings(P, elsewhere) == ["front", "front"]
+
+
+def test_times_are_repeated_and_errors_are_not_touched_by_it():
+    points, refused = precision.measure([toy()], Level.QUICK, repeats=4)
+    assert refused == []
+    assert [p.resolution for p in points] == [10, 20]
+    for p in points:
+        assert p.repeats == 4
+        assert p.fast <= p.seconds <= p.slow
+        assert p.seconds == pytest.approx(3e-4 * p.resolution)  # what the toy says of itself
+        assert f"--resolution {p.resolution}" in p.command
+    assert precision.seconds_to(points, 1e-9) == {}
+    best = precision.seconds_to(points, 1.0)["bond/trapezium"]
+    assert best == (points[0].seconds, points[0].error)
+
+
+def test_a_posed_problem_is_varied_one_choice_at_a_time():
+    case = registry.get("disc-exponential")
+    names = [m.name for m in precision.methods_of(case)]
+    assert {"fem/P1", "fem/P2"} <= set(names)
+    varied = [m for m in precision.methods_of(case) if m not in case.methods]
+    assert [m.name.split(", ")[1] for m in varied] == [name for name, _, _ in precision.VARIANTS]
+    pose = case.poses[0]
+    same = precision.vary(case, pose, {}, 1e-13, 10)
+    own = case.method(pose.method).run(10)
+    assert same.unknowns == own.unknowns
+    assert same.quantities[case.primary] == pytest.approx(own.quantities[case.primary], rel=1e-6)
+    loose = precision.vary(case, pose, {}, 1e-1, 10)
+    assert loose.quantities[case.primary] > same.quantities[case.primary]
+    with pytest.raises(ValueError, match="other particles"):
+        precision.vary(case, pose, {"spacing": 0.07}, 1e-6, 10)
+
+
+def test_cases_of_the_study_are_tagged():
+    names = {case.name for case in registry.select([precision.TAG])}
+    assert {"disc-exponential", "crack-tip-I", "free-plates", "bimaterial-disc"} <= names
+    assert any(name.startswith("hole") for name in names)
+
+
+def test_files_and_the_chapter(tmp_path):
+    points, _ = precision.measure([toy()], Level.QUICK, repeats=3)
+    study = precision_chapter.Study(points, ["x: no"], "quick", 1, 2, 3.0, "now", {"commit": "c"})
+    precision_chapter.write(study, tmp_path)
+    assert precision_chapter.read(tmp_path) == study
+    assert study.busy
+    rows = list(csv.DictReader((tmp_path / "precision.csv").open()))
+    assert [float(row["error"]) for row in rows] == [p.error for p in points]
+    (section,) = precision_chapter.sections(study, {"toy": "A toy"}, {"toy": "error"})
+    assert b"<svg" in section["picture"].content
+    (tmp_path / precision_chapter.NAME).write_text(json.dumps({"format": 7}))
+    with pytest.raises(ValueError, match="not of format 1"):
+        precision_chapter.read(tmp_path)
+    assert precision_chapter.read(tmp_path / "nowhere") is None
+
+
+def test_the_command_refuses_what_it_does_not_know(tmp_path):
+    given = ["precision", "disc-exponential", "--measure", "--method", "fem/P9"]
+    found = CliRunner().invoke(app, [*given, "--out", str(tmp_path)])
+    assert found.exit_code == 2
+    assert "fem/P2" in found.output
