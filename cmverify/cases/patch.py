@@ -30,10 +30,14 @@ LADDER = {Level.QUICK: (20,), Level.STANDARD: (20, 40), Level.PAPER: (20, 40)}
 
 @dataclass(frozen=True)
 class Patch:
-    """The sign of C66 - C12 and, for tests, a factor on the stiffness C11 the solver is given."""
+    """The sign of C66 - C12, and how bonds weigh in by their length (Λ of Eq. 56).
+
+    Tests put a factor on the stiffness C11 that the solver is given.
+    """
 
     sign: str
     distortion: float = 1.0
+    influence: str = "constant"
 
 
 def random_tensors(sign: str) -> Iterator[Array]:
@@ -64,7 +68,9 @@ def problems(sign: str) -> Iterator[tuple[Array, Any]]:
         yield voigt, combine(fields, generator.normal(size=len(fields)).tolist())
 
 
-def scene_of(voigt: Array, exact: Any, n: int, distortion: float = 1.0) -> Any:
+def scene_of(
+    voigt: Array, exact: Any, n: int, distortion: float = 1.0, influence: str = "constant"
+) -> Any:
     """The square that a field of one tensor holds at its edges."""
     from solver import ElasticTensor, Scene, Support, UniformShear, rectangle
 
@@ -80,15 +86,17 @@ def scene_of(voigt: Array, exact: Any, n: int, distortion: float = 1.0) -> Any:
         material=ElasticTensor(given),
         calibration="lattice",
         law=UniformShear() if cauchy else None,
+        influence=influence,
         supports=[
             Support.layer(cells=3.5, displacement=exact.displacement, rotation=exact.rotation)
         ],
     )
 
 
-def error(voigt: Array, exact: Any, n: int, distortion: float) -> dict:
+def error(voigt: Array, exact: Any, n: int, problem: Patch) -> dict:
     """Relative L2 errors of displacement and rotation of one random field, and the solution."""
-    solution = scene_of(voigt, exact, n, distortion).solve(tolerance=1e-13)
+    scene = scene_of(voigt, exact, n, problem.distortion, problem.influence)
+    solution = scene.solve(tolerance=1e-13)
     free = ~solution.prescribed
     x, y = solution.points[free].T
     found = {"displacement": relative_l2(solution.displacement[free], exact.displacement(x, y))}
@@ -114,7 +122,7 @@ def patch(problem: Patch, n: int) -> Measurement:
     solved, refused, unknowns, methods = 0, 0, 0, set()
     for voigt, exact in problems(problem.sign):
         try:
-            found = error(voigt, exact, n, problem.distortion)
+            found = error(voigt, exact, n, problem)
         except (InadmissibleMaterialError, CalibrationError):
             refused += 1
             continue
@@ -168,28 +176,39 @@ QUANTITIES = {
 }
 SOURCE = "rounding: constant and linear strains are exact on the lattice's own sums"
 NAMES = {"positive": "C66 > C12", "zero": "C66 = C12", "negative": "C66 < C12"}
+#: Long bonds weigh less: Λ = 1 − |ξ|/δ.
+CONICAL = "bond/lattice C66 > C12, conical influence"
 
 CASES = (
     Case(
         name="elastic-patch",
         title="Elastic patch test with random tensors of every sign of C₆₆ − C₁₂",
         section="Sect. 2.2",
-        equations=("Eqs. 65–70, on the lattice's own sums",),
+        equations=("Eq. 56, Λ constant and conical", "Eqs. 65–70, on the lattice's own sums"),
         tags=("patch", "elasticity"),
         shows=(
             "Given displacement and rotation in the layer, any quadratic field in equilibrium is "
             "reproduced to rounding, whether the shear bonds are stiff, absent or of negative "
             "stiffness."
         ),
-        methods=tuple(
-            Method(f"bond/lattice {NAMES[s]}", "bond", partial(patch, Patch(s)), LADDER)
-            for s in SIGNS
+        methods=(
+            *(
+                Method(f"bond/lattice {NAMES[s]}", "bond", partial(patch, Patch(s)), LADDER)
+                for s in SIGNS
+            ),
+            Method(
+                CONICAL,
+                "bond",
+                partial(patch, Patch("positive", influence="conical")),
+                {level: ladder[:1] for level, ladder in LADDER.items()},
+            ),
         ),
         checks=tuple(
-            Check(f"bond/lattice {NAMES[s]}", quantity, {20: 1e-11}, source=SOURCE, exact=True)
-            for s in SIGNS
+            Check(name, quantity, {20: 1e-11}, source=SOURCE, exact=True)
+            for name in (*(f"bond/lattice {NAMES[s]}" for s in SIGNS), CONICAL)
             for quantity in ("displacement", "rotation")
-            if (s, quantity) != ("zero", "rotation")  # no shear bonds, no rotations
+            # No shear bonds, no rotations.
+            if (name, quantity) != (f"bond/lattice {NAMES['zero']}", "rotation")
         ),
         quantities=QUANTITIES,
         primary="displacement",
