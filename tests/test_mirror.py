@@ -47,6 +47,7 @@ ELSEWHERE = {
     "cmverify/report/figures.py": "tests/cmverify/report/test_build.py",
     "cmverify/report/stages.py": "tests/cmverify/report/test_build.py",
     "cmverify/report/style.py": "tests/cmverify/report/test_build.py",
+    "cmverify/report/precision_chapter.py": "tests/cmverify/studies/test_precision.py",
     "cmverify/report/summary.py": "tests/cmverify/report/test_build.py",
     "cmverify/report/terminal.py": "tests/cmverify/test_cli.py",
     # Commands and what they run.

@@ -1,5 +1,7 @@
 """Names, counts and figures as they are spelt."""
 
+import re
+
 import pytest
 
 from cmverify.cases import registry
@@ -28,7 +30,7 @@ def test_no_name_of_a_quantity_loses_a_letter_but_its_first():
     for case in registry.all_cases():
         for name in case.quantities:
             assert heading(name)[1:] == name[1:]
-            assert "_" not in name, f"{case.name}: {name} is a key and no name"
+            assert not re.search("[a-z]{2}_", name), f"{case.name}: {name} is a key and no name"
 
 
 def test_exponents_and_counts():
