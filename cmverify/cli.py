@@ -20,6 +20,7 @@ from cmverify.faults.command import faults
 from cmverify.studies.anisotropy.command import material
 from cmverify.studies.speed.command import speed
 from cmverify.studies.stability.command import stability
+from cmverify.sweep.command import sweep
 
 #: What the parser raises, whichever library typer builds on.
 UsageError: Any = typer.BadParameter.__mro__[1]
@@ -124,6 +125,7 @@ app.command()(schema)
 app.command()(speed)
 app.command()(stability)
 app.command()(material)
+app.command()(sweep)
 
 
 @app.command("list")

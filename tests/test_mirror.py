@@ -60,6 +60,8 @@ ELSEWHERE = {
     "cmverify/exchange/statement.py": "tests/cmverify/exchange/test_case_export.py",
     "cmverify/exchange/request.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/exchange/refusal.py": "tests/cmverify/exchange/test_scene_file.py",
+    "cmverify/sweep/command.py": "tests/cmverify/sweep/test_run.py",
+    "cmverify/sweep/work.py": "tests/cmverify/sweep/test_run.py",
     "cmverify/run/threads.py": "tests/cmverify/run/test_runner.py",
 }
 #: Run by asv, which `asv check` and a quick run test in CI.

@@ -47,8 +47,14 @@ def request(path: Path, memory: float | None = None, seconds: float = budget.SEC
         If the file is missing, is not TOML, says something that does not exist or makes no sense,
         or asks for more than may be spent.
     """
-    source = _source(path)
-    file = _declared(source)
+    return request_of(source_of(path), memory, seconds)
+
+
+def request_of(
+    source: Source, memory: float | None = None, seconds: float = budget.SECONDS
+) -> Request:
+    """As `request`, of a file that was read (and changed, as a sweep does)."""
+    file = declared(source)
     scene = _scene(file, source)
     _afford(file, scene, source, memory, seconds)
     analysis, options = _asked(file, source)
@@ -123,7 +129,8 @@ def _timeless(file: SceneFile, source: Source, analysis: str) -> None:
 # ---- from bytes to the declared model ---------------------------------------------------
 
 
-def _source(path: Path) -> Source:
+def source_of(path: Path) -> Source:
+    """A file as it stands, TOML and no more."""
     try:
         text = path.read_bytes().decode("utf-8-sig")
     except OSError as error:
@@ -145,7 +152,8 @@ def _source(path: Path) -> Source:
         raise SceneFileError(f"{place} is not TOML: {error}") from error
 
 
-def _declared(source: Source) -> SceneFile:
+def declared(source: Source) -> SceneFile:
+    """The model of what a file says, before anything is built."""
     from pydantic import ValidationError
 
     from cmverify.exchange.analysis_table import scene_model

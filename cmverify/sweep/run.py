@@ -1,0 +1,239 @@
+"""A sweep on this machine's processes or on a Dask cluster; finished points are kept at once."""
+
+from __future__ import annotations
+
+import csv
+import io
+import multiprocessing
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from cmverify.sweep import work
+from cmverify.sweep.grid import Point, points
+
+Listen = Callable[[Point, str], None]
+
+
+def _silent(point: Point, state: str) -> None:
+    """Nobody listens."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What a sweep found.
+
+    Attributes
+    ----------
+    rows : list of dict
+        One a finished point, in the grid's order: settings, ``refused``, figures, ``seconds``.
+    missing : list of (Point, reason)
+        Points whose worker died or that no worker could do.
+    paths : tuple of Path
+        The table: CSV, and Parquet where pyarrow is installed.
+    """
+
+    rows: list[dict[str, Any]]
+    missing: list[tuple[Point, str]]
+    paths: tuple[Path, ...]
+
+
+def sweep(
+    scene: str | os.PathLike[str],
+    grid: Mapping[str, Any],
+    out: str | os.PathLike[str],
+    *,
+    jobs: int = 1,
+    dask: str | None = None,
+    listen: Listen = _silent,
+) -> Sweep:
+    """Solve a scene file at every point of a grid; what stands in `out` already is not done again.
+
+    Parameters
+    ----------
+    scene : path
+    grid : mapping
+        As [grid] of a sweep's file (`cmverify.sweep.grid`).
+    out : path
+        Folder of the records and the table.
+    jobs : int
+        Processes on this machine.
+    dask : str, optional
+        Address of a Dask scheduler that does the work instead.
+    listen : callable
+        Told of every point and what became of it: "reused", "done", "refused" or "failed".
+
+    Raises
+    ------
+    SceneFileError, GridError
+        If a point asks for what does not exist, before anything is solved.
+    ImportError
+        If Dask is asked for and not installed.
+    """
+    return run(points(Path(scene), grid), Path(out), jobs=jobs, dask=dask, listen=listen)
+
+
+def run(
+    found: Sequence[Point],
+    folder: Path,
+    *,
+    jobs: int = 1,
+    dask: str | None = None,
+    listen: Listen = _silent,
+) -> Sweep:
+    """Do what is not done yet, and write the table. Parameters as in `sweep`."""
+    from cmverify.run.folder import claimed
+
+    if jobs < 1:
+        raise ValueError(f"at least one process is needed, not {jobs}")
+    with claimed(folder):
+        (folder / "points").mkdir(exist_ok=True)
+        records = {p.key: r for p in found if (r := work.load(folder, p.key)) is not None}
+        for point in found:
+            if point.key in records:
+                listen(point, "reused")
+        todo = [point for point in found if point.key not in records]
+        missing = []
+        done = on_cluster(todo, folder, dask) if dask else on_processes(todo, folder, jobs)
+        for point, answer in done:
+            if isinstance(answer, str):
+                missing.append((point, answer))
+                listen(point, "failed")
+                continue
+            if work.load(folder, point.key) is None:  # from a machine with other disks
+                work.save(folder, answer)
+            records[point.key] = answer
+            listen(point, "refused" if answer["refused"] else "done")
+        rows = [_row(point, records[point.key]) for point in found if point.key in records]
+        return Sweep(rows, missing, write_table(rows, folder))
+
+
+Done = Iterator[tuple[Point, dict[str, Any] | str]]
+
+
+def on_processes(todo: Sequence[Point], folder: Path, jobs: int) -> Done:
+    """Points with their records, or why there is none, as they are finished.
+
+    When a process dies its pool is lost. What it had begun is then tried alone, so that only a
+    point that kills its process is given up, and the others go on together.
+    """
+    left = {point.key: point for point in todo}
+    alone: set[str] = set()
+    while left:
+        together = [point for point in left.values() if point.key not in alone]
+        chosen = together or [next(iter(left.values()))]
+        broken = False
+        for point, answer in _pool(chosen, folder, min(jobs, len(chosen)), jobs):
+            if answer is None:
+                broken = True
+                continue
+            del left[point.key]
+            yield point, answer
+        if not broken:
+            continue
+        if not together:
+            del left[chosen[0].key]
+            yield chosen[0], "its process died"
+        begun = work.begun(folder) & left.keys()
+        # Nothing begun: the processes cannot even start.
+        alone |= begun or set(left)
+
+
+def _pool(
+    todo: Sequence[Point], folder: Path, workers: int, jobs: int
+) -> Iterator[tuple[Point, dict[str, Any] | str | None]]:
+    """Points with their records, or an error; None for what was lost with a process."""
+    from cmverify.run.lifeline import hold
+    from cmverify.run.threads import child_environment, thread_environment, threads_per_worker
+
+    context = multiprocessing.get_context("spawn")
+    with child_environment(thread_environment(threads_per_worker(jobs))):
+        pool = ProcessPoolExecutor(
+            workers, mp_context=context, initializer=hold, initargs=(os.getpid(),)
+        )
+        try:
+            tasks = {pool.submit(work.solve, point, str(folder)): point for point in todo}
+            for task in as_completed(tasks):
+                try:
+                    yield tasks[task], task.result()
+                except BrokenProcessPool:
+                    yield tasks[task], None
+                except Exception as error:
+                    yield tasks[task], f"{type(error).__name__}: {error}"
+        except BaseException:
+            for child in multiprocessing.active_children():
+                child.kill()
+            raise
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+
+
+def on_cluster(todo: Sequence[Point], folder: Path, address: str) -> Done:
+    """The same, on the workers of a Dask scheduler."""
+    if find_spec("distributed") is None:
+        raise ImportError("a Dask cluster needs Dask: pip install 'cmverify[cluster]'")
+    from distributed import Client
+    from distributed import as_completed as finished
+
+    if not todo:
+        return
+    with Client(address) as client:
+        tasks = {
+            client.submit(
+                work.solve, point, str(folder.resolve()), key=f"cmverify-{point.key}", retries=2
+            ): point
+            for point in todo
+        }
+        for task in finished(list(tasks)):
+            point = tasks[task]
+            if task.status == "finished":
+                yield point, task.result()
+            else:
+                yield point, " ".join(str(task.exception()).split()) or task.status
+            task.release()
+
+
+def _row(point: Point, record: dict[str, Any]) -> dict[str, Any]:
+    return {
+        **point.labels,
+        "refused": record["refused"],
+        **{k: v for k, v in record["values"].items() if k not in point.labels},
+        "seconds": record["seconds"],
+    }
+
+
+def write_table(rows: Sequence[dict[str, Any]], folder: Path) -> tuple[Path, ...]:
+    """sweep.csv, and sweep.parquet where pyarrow is installed."""
+    from cmverify.run.results import write_text
+
+    columns = list(dict.fromkeys(name for row in rows for name in row))
+    text = io.StringIO()
+    writer = csv.DictWriter(text, columns, restval="", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    path = folder / "sweep.csv"
+    write_text(path, text.getvalue())
+    if find_spec("pyarrow") is None or not rows:
+        return (path,)
+    import pyarrow
+    from pyarrow import parquet
+
+    from solver.result import replacing
+
+    data = {name: _column([row.get(name) for row in rows]) for name in columns}
+    target = folder / "sweep.parquet"
+    with replacing(target) as partial:
+        parquet.write_table(pyarrow.table(data), partial)
+    return path, target
+
+
+def _column(values: list[Any]) -> list[Any]:
+    """Of one kind: words where some are words."""
+    if any(isinstance(value, str) for value in values):
+        return [None if value is None else str(value) for value in values]
+    return [None if value is None else float(value) for value in values]
