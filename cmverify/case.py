@@ -104,12 +104,15 @@ class Stages:
     points : (N, 2) array
     spacing : float
     stages : tuple of Stage
+    outlines : tuple of (k, 2) arrays
+        Lines drawn on each map, such as the rims of pins.
     """
 
     quantity: str
     points: Array
     spacing: float
     stages: tuple[Stage, ...]
+    outlines: tuple[Array, ...] = ()
 
 
 @dataclass(frozen=True)

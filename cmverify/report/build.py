@@ -238,12 +238,15 @@ def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture
         alt = f"Maps of {key}: computed, reference and their difference; {where}."
         figure = maps.field_panels(fields, item, case.length)
         pictures.append(Picture.drawn(f"field-{key}", "png", figure, caption, alt, wide=True))
-    stages = featured[finest].stages
-    if stages is not None:
-        caption = f"The crack's stages beside the curve: {where}."
-        alt = f"Maps of {stages.quantity} at marked points of the curve; {where}."
-        figure = stages_figure(featured[finest])
-        pictures.append(Picture.drawn("stages", "png", figure, caption, alt, wide=True))
+    for name, number, shown in _staged(result):
+        stages = shown.stages
+        assert stages is not None
+        at = f"{name} at Δx = {case.length}/{number}"
+        caption = f"The crack's stages beside the curve: {at}."
+        alt = f"Maps of {stages.quantity} at marked points of the curve; {at}."
+        key = "stages" if name == result.featured else f"stages-{len(pictures)}"
+        figure = stages_figure(shown)
+        pictures.append(Picture.drawn(key, "png", figure, caption, alt, wide=True))
     for index, (line, series) in enumerate(figures.lines_of(featured), 1):
         title = mathtext(line.title)
         caption = f"{title}. {heading(where)}."
@@ -256,6 +259,16 @@ def _pictures(result: CaseResult, points: list[precision.Point]) -> list[Picture
         figure = figures.line_plot(line, series, case.length, beside)
         pictures.append(Picture.drawn(f"line-{index}", "svg", figure, caption, alt))
     return pictures
+
+
+def _staged(result: CaseResult) -> list[tuple[str, int, Measurement]]:
+    """Methods with stages, each at its finest resolution, the featured one first."""
+    found = []
+    for method in sorted(result.outcomes, key=lambda name: name != result.featured):
+        finest = result.finest(method)
+        if finest is not None and finest[1].stages is not None:
+            found.append((method, *finest))
+    return found
 
 
 def _by_methods(result: CaseResult, index: int) -> dict[str, LinePlot]:

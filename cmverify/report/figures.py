@@ -61,10 +61,11 @@ def line_plot(
             x = curve.abscissa if curve.reference_abscissa is None else curve.reference_abscissa
             axis.plot(x, curve.reference, "k-", linewidth=1.1, label=label, zorder=2)
         for index, (label, curve) in enumerate(curves):
-            shown = markers(curve.abscissa, curve.computed, 60 if line.joined else 30)
+            # A joined curve keeps every corner, with few marks to tell it by.
+            shown = markers(curve.abscissa, curve.computed, 12 if line.joined else 30)
             look = looks[index]
             axis.plot(
-                curve.abscissa[shown], curve.computed[shown], zorder=3,
+                curve.abscissa, curve.computed, zorder=3, markevery=shown.tolist(),
                 linestyle="-" if line.joined else "none", linewidth=0.9,
                 label=label, markerfacecolor="none", markeredgewidth=1.2, **look,
             )  # fmt: skip

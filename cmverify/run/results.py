@@ -234,7 +234,10 @@ def _describe(m: Measurement, arrays: dict[str, np.ndarray]) -> dict[str, Any]:
             "quantity": m.stages.quantity,
             "spacing": m.stages.spacing,
             "labels": [stage.label for stage in m.stages.stages],
+            "outlines": len(m.stages.outlines),
         }
+        for k, outline in enumerate(m.stages.outlines):
+            arrays[f"stage_outline{k}"] = outline
         for k, stage in enumerate(m.stages.stages):
             arrays[f"stage{k}_at"], arrays[f"stage{k}_values"] = stage.at, stage.values
     data["lines"] = []
@@ -268,6 +271,7 @@ def _restore(data: dict[str, Any], arrays: dict[str, Any]) -> Measurement:
                 Stage(label, arrays[f"stage{k}_at"], arrays[f"stage{k}_values"])
                 for k, label in enumerate(entry["labels"])
             ),
+            tuple(arrays[f"stage_outline{k}"] for k in range(entry.get("outlines", 0))),
         )
     lines = []
     for i, entry in enumerate(data["lines"]):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import Protocol
 
 import numpy as np
@@ -121,6 +121,8 @@ class Equilibrium:
         self.masters: Array = np.zeros(0 if constraints is None else constraints.count)
         self._bordered: BorderedInverse | None = None
         self.iterations, self.residual, self.seconds = 0, 0.0, 0.0
+        #: CPU time of products and preconditioner alone, of all solves.
+        self.solving = 0.0
         # For the preconditioner: iterations a decade of the residual when it was fresh, whether it
         # is due, and how many bonds were gone when it was made.
         self.pace, self.worn, self.built = 0.0, False, 0
@@ -403,12 +405,14 @@ class Equilibrium:
                 rhs = np.concatenate([rhs, self.border.force])
                 before = np.concatenate([before, self.masters])
                 system = Bordered(operator, self.border)
+            cpu = process_time()
             left = rhs - system.matvec(before)
             refreshed = self._prepare()
             task = Task(rhs, before, tolerance, self.max_iterations)
             inverse = self._inverse()
             after_x, iterations = method.iterate(operator, self.kind, inverse, task, self.border)
             right = rhs - system.matvec(after_x)
+            self.solving += process_time() - cpu
             size, after = float(np.linalg.norm(rhs)), float(np.linalg.norm(right))
             residual = after / size if size else 0.0
             decades = np.log10(max(float(np.linalg.norm(left)), 1e-300) / max(after, 1e-300))

@@ -37,7 +37,7 @@ import numpy as np
 from cmverify.case import Case, Check, Curve, Level, LinePlot, Measurement, Method, OrderBand
 from cmverify.cases.common import warm
 
-from .running import DESCRIPTIONS, Led, lead, unmirrored
+from .running import DESCRIPTIONS, Led, circle, lead, unmirrored, uprights
 
 if TYPE_CHECKING:
     from solver import Scene
@@ -126,8 +126,7 @@ def bond(plate: Plate, n: int) -> Measurement:
         "bond lattice",
         move * h.load_factor,
         force * h.force,
-        np.zeros(1),
-        np.array([PAPER * move]),
+        *uprights([PAPER * move], force * float(h.force.max())),
     )
     paths = tuple(
         Curve(f"tip {k}", path.points[:, 0] / EDGE, path.points[:, 1] / EDGE, np.zeros(0),
@@ -158,12 +157,12 @@ def bond(plate: Plate, n: int) -> Measurement:
         },
         lines=(
             LinePlot(
-                "Force of the grip; mark: the paper's first crack",
+                "Force of the grip",
                 "$u^*$ (mm)",
                 "force per thickness (kN/m)",
                 (curve,),
                 joined=True,
-                reference_label="paper, S.1 (load only)",
+                reference_label="paper's first crack",
             ),
             LinePlot(
                 "Where the crack has gone",
@@ -174,7 +173,12 @@ def bond(plate: Plate, n: int) -> Measurement:
                 reference_label="",
             ),
         ),
-        stages=led.stages(lambda factor: f"u* = {factor:.4f} ū", move, force),
+        stages=led.stages(
+            lambda factor: f"u* = {factor:.4f} ū",
+            move,
+            force,
+            outlines=(circle((0.0, 0.0), RADIUS),),
+        ),
     )
 
 

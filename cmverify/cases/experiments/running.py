@@ -9,6 +9,8 @@ from time import perf_counter, process_time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
 
 from cmverify.case import Array, Stage, Stages
 from cmverify.run import unfinished
@@ -63,8 +65,15 @@ class Led:
         """Length of all that has cracked, m: paths and branches."""
         return float(sum(path.length for path in self.run.paths))
 
-    def stages(self, label: Callable[[float], str], displacement: float, force: float) -> Stages:
-        """Stages at `SHARES` of what was dissipated, marked on the load curve.
+    def stages(
+        self,
+        label: Callable[[float], str],
+        displacement: float,
+        force: float,
+        solves: Sequence[int] | None = None,
+        outlines: tuple[Array, ...] = (),
+    ) -> Stages:
+        """Stages after so many solves, or at `SHARES` of what was dissipated.
 
         Parameters
         ----------
@@ -72,9 +81,16 @@ class Led:
             Load factor → what is written over the picture.
         displacement, force : float
             Abscissa per load factor and ordinate per conjugate force of the curve.
+        solves : sequence of int, optional
+            The first moment kept after each of them.
+        outlines : tuple of (k, 2) arrays
         """
         spent = np.array([moment.dissipated for moment in self.moments])
         chosen = [int(np.argmin(np.abs(spent - share * spent[-1]))) for share in SHARES]
+        if solves:
+            taken = np.array([moment.solves for moment in self.moments])
+            last = len(taken) - 1
+            chosen = [min(int(np.searchsorted(taken, wanted)), last) for wanted in solves]
         found = [self.moments[k] for k in dict.fromkeys(chosen)]
         lattice = self.run.bonds.lattice
         return Stages(
@@ -89,6 +105,7 @@ class Led:
                 )
                 for m in found
             ),
+            outlines,
         )
 
 
@@ -135,6 +152,7 @@ def lead(
     if place is not None:
         options |= {"checkpoint": place / "run.npz", "every": _EVERY}
     run = fracture.grow(scene, toughness, programme, until=watch, **options)
+    cpu = process_time() - cpu
     steps = run.steps
     solves = len(steps)
     if not taken_up:
@@ -146,7 +164,8 @@ def lead(
         "solves": solves,
         "iterations": int(steps["iterations"].sum()),
         "bonds a solve": round(len(run.broken_bonds) / solves, 1),
-        "CPU s a solve": round((process_time() - cpu) / max(solves - since, 1), 3),
+        "CPU s a solve": round(cpu / max(solves - since, 1), 3),
+        "share outside products and preconditioner": round(1 - run.body.solving / cpu, 3),
         "ended": run.reason,
     }
     if since > 1:
@@ -174,18 +193,52 @@ def _read(path: Path) -> list[Moment]:
     ]
 
 
-def events(run: Growth, least: float) -> list[tuple[float, float]]:
-    """Loads at which a crack jumped: (load factor, energy dissipated at once) in their order.
+def circle(centre: ArrayLike, radius: float) -> Array:
+    """Points of a circle, for outlines, (49, 2)."""
+    turn = np.linspace(0.0, 2 * np.pi, 49)
+    return np.asarray(centre) + radius * np.column_stack([np.cos(turn), np.sin(turn)])
 
-    Parameters
-    ----------
-    run : Growth
-    least : float
-        Smallest energy that counts as a jump, J per unit thickness.
+
+def uprights(at: Sequence[float], top: float) -> tuple[Array, Array]:
+    """Ordinates and abscissae of a reference curve of upright lines up to `top`."""
+    x = np.repeat(np.asarray(at, dtype=float), 3)
+    y = np.tile([0.0, top, np.nan], len(at))
+    return y, x
+
+
+def bridging(run: Growth) -> NDArray[np.int64]:
+    """Whole bonds across the paths of all cracks, flat indices: they have not been paid for yet.
+
+    Bonds at a small angle to a crack are hardly strained by its opening and break far behind its
+    tip, the farther the tougher they are. A bond that crosses the paths twice parts nothing.
     """
-    h = run.history
-    jump = np.diff(h.dissipated, prepend=0.0)
-    return [(float(h.load_factor[k]), float(jump[k])) for k in np.flatnonzero(jump >= least)]
+    bonds, horizon = run.bonds, run.scene.m * run.scene.spacing
+    points = bonds.lattice.points
+    whole = np.flatnonzero(bonds.strengths.ravel() > 0)
+    pieces = [
+        np.hstack([path.points[:-1], path.points[1:]]) for path in run.paths if len(path.points) > 1
+    ]
+    if not pieces:
+        return np.zeros(0, dtype=np.int64)
+    segments = np.vstack(pieces)
+    reach = horizon + float(np.hypot(*(segments[:, 2:] - segments[:, :2]).T).max())
+    _, p, q = bonds.ends(whole)
+    near = cKDTree(segments[:, :2]).query(points[p], distance_upper_bound=reach)[0] < reach
+    whole, first, second = whole[near], points[p[near]], points[q[near]]
+    crossed = np.zeros(len(whole), dtype=bool)
+    for segment in segments:
+        start, end = segment[:2], segment[2:]
+        along, bond = end - start, second - first
+        sides = _cross(along, first - start) * _cross(along, second - start) < 0
+        # The end belongs to the next piece.
+        ends = (_cross(bond, start - first) > 0) != (_cross(bond, end - first) > 0)
+        crossed ^= sides & ends
+    found: NDArray[np.int64] = whole[crossed]
+    return found
+
+
+def _cross(one: Array, other: Array) -> Array:
+    return np.asarray(one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0])
 
 
 def unmirrored(run: Growth, axis: Sequence[float] = (0.0, 0.0)) -> int:

@@ -1,6 +1,7 @@
 """The paper's experiments at the coarsest spacings: what is judged is seen, pictures are kept."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from cmverify.cases.experiments import CASES, bone, inclusion, notched_plate, pa
 from cmverify.cases.experiments.running import unmirrored
 from cmverify.report.stages import stages_figure
 from cmverify.run.results import Record, load, save
+from solver.fracture.crack_path import CrackPath
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +27,15 @@ def test_an_inclusion_cracks_symmetrically_and_its_stages_are_kept(pulled, tmp_p
     assert [s.label for s in again.stages.stages] == [s.label for s in pulled.stages.stages]
     for one, other in zip(again.stages.stages, pulled.stages.stages, strict=True):
         np.testing.assert_array_equal(one.values, other.values)
-    assert len(stages_figure(pulled).axes) == 1 + len(pulled.stages.stages)
+    for one, other in zip(again.stages.outlines, pulled.stages.outlines, strict=True):
+        np.testing.assert_array_equal(one, other)
+    # The curve, the maps and what their colours mean.
+    assert len(stages_figure(pulled).axes) == 2 + len(pulled.stages.stages)
+    # Marks lie on the curve.
+    curve = pulled.lines[0].curves[0]
+    for stage in pulled.stages.stages:
+        assert curve.abscissa.min() <= stage.at[0] <= curve.abscissa.max()
+        assert curve.computed.min() <= stage.at[1] <= curve.computed.max()
 
 
 def test_one_bond_without_its_image_is_seen():
@@ -51,6 +61,48 @@ def test_stiffness_of_the_notched_plate_sees_one_per_cent():
     error = np.array(found) / notched_plate.reference_stiffness(True) - 1
     assert error[1] - error[0] == pytest.approx(0.01, rel=0.1)
     assert abs(error[0]) < 0.06
+
+
+def _parted(m: int, n: int, *rows: tuple[float, list[tuple[float, float]]]):
+    """What `notched_plate.happened` reads of a run: bonds that parted at each load, in a."""
+    marks = np.array([mark for _, row in rows for mark in row])
+    loads = np.array([load for load, row in rows for _ in row])
+    breaks = np.zeros(len(marks), dtype=[("step", "i8"), ("load_factor", "f8")])
+    breaks["step"], breaks["load_factor"] = np.arange(len(marks)), loads
+    unit = notched_plate.UNIT
+    own = CrackPath(unit * np.array([(-4.5, 1.0), *(x for _, row in rows[:2] for x in row)]))
+    return SimpleNamespace(
+        bonds=SimpleNamespace(lengths=lambda bonds: np.full(len(bonds), unit / n)),
+        broken_bonds=np.arange(len(marks)),
+        midpoints=unit * marks,
+        breaks=breaks,
+        paths=[own],
+    )
+
+
+def test_events_of_the_notched_plate_are_read_off_in_their_order():
+    n, m = 5, 3
+    way = [(x, 1.0 - 0.2 * max(0.0, x + 1.0)) for x in np.arange(-4.4, -0.7, 0.2)]
+    first, second = way[:6], way[6:]
+    right = [(x, -1.8) for x in np.arange(2.9, 6.5, 0.2)]
+    hole = np.hypot(*np.subtract(second[-1], notched_plate.HOLE)) - 2.0
+    assert hole > 0.0
+    run = _parted(m, n, (0.3, first), (0.35, second), (0.7, right[:5]), (1.2, right[5:]))
+    found = notched_plate.happened(run, m, n)
+    # It has not come to the hole yet.
+    assert list(found) == ["crack", "second crack", "through"]
+    assert [load for load, _ in found.values()] == pytest.approx([0.3, 0.7, 1.2])
+    to_hole = np.subtract(notched_plate.HOLE, second[-1])
+    reach = [
+        tuple(second[-1] + s * to_hole / np.hypot(*to_hole)) for s in np.arange(0.2, hole, 0.2)
+    ]
+    run = _parted(m, n, (0.3, first), (0.36, second + reach), (0.7, right[:5]), (1.2, right[5:]))
+    found = notched_plate.happened(run, m, n)
+    assert list(found) == list(notched_plate.EVENTS)
+    load, step = found["in the hole"]
+    # To a cell.
+    assert load == 0.36
+    assert 0 <= len(first) + len(second) + len(reach) - 1 - step <= 1
 
 
 def test_the_bone_specimen_is_near_the_standard():

@@ -1,10 +1,39 @@
 """A killed experiment goes on where it stood, with the same moments and bits."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from cmverify.cases.experiments import inclusion, running
 from cmverify.run import unfinished
+from solver import ElasticTensor, Scene, Support, Toughness, rectangle
+from solver.fracture.breaking import Breakable
+from solver.fracture.crack_path import CrackPath
+
+
+def test_bonds_that_bridge_a_crack_are_those_that_its_path_crosses_once():
+    """Half a cut's bonds are broken: the other half bridges it, and both cost G × its length."""
+    body = Scene(
+        rectangle(24.0, 24.0), 1.0, ElasticTensor.isotropic(1.0, 0.2), m=3,
+        supports=[Support.where(lambda x, y: abs(y) > 11, displacement=(0.0, 0.0))],
+    )  # fmt: skip
+    bonds = Breakable(body.discretise(sharp_tips=False, constrained=True), Toughness(10.0))
+    every = np.flatnonzero(bonds.whole.ravel() > 0)
+    _, p, q = bonds.ends(every)
+    (x0, y0), (x1, y1) = bonds.lattice.points[p].T, bonds.lattice.points[q].T
+    at = x0 - y0 * (x1 - x0) / np.where(y1 == y0, 1.0, y1 - y0)
+    across = every[(y0 * y1 < 0) & (np.abs(at) < 5.1)]
+    bonds.broken.add(across[::2], 0, 1.0, False)
+    # In pieces.
+    path = CrackPath(np.array([(-5.1, 0.0), (-2.47, 0.0), (0.1, 0.0), (5.1, 0.0)]))
+    # There and back parts nothing but what ends between.
+    hook = CrackPath(np.array([(8.1, 0.0), (9.2, 0.0), (9.2, 0.01), (8.1, 0.01)]))
+    run = SimpleNamespace(bonds=bonds, scene=body, paths=[path, hook])
+    bridge = running.bridging(run)
+    np.testing.assert_array_equal(np.sort(bridge), np.setdiff1d(across, across[::2]))
+    paid = bonds.cost_of(across[::2]).sum() + bonds.cost_of(bridge).sum()
+    assert paid == pytest.approx(10.0 * 10.2, rel=0.02)
 
 
 class Killed(BaseException):
