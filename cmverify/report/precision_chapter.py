@@ -117,7 +117,8 @@ def _figure(points: list[Point], quantity: str) -> Figure:
             front = [p for p in series if p.standing == "front"]
             axis.plot(
                 [p.seconds for p in front], [max(p.error, 1e-17) for p in front],
-                linestyle="none", zorder=4, color=look["color"], marker=look["marker"], markersize=look["markersize"],
+                linestyle="none", zorder=4,
+                **{key: look[key] for key in ("color", "marker", "markersize")},
             )  # fmt: skip
         axis.set(xscale="log", yscale="log", title="Error against time (lower left is better)")
         axis.set_xlabel("set-up and solve (s, median)")
