@@ -332,9 +332,10 @@ CASES = (
                 for m in _DRAWN
             ),
             Check(_AHEAD.name, "grown", {3: 0.037},
-                  source="2 % is asked of drawn cracks; the path of one that grew ends at its "
-                  "furthest broken bond, about a cell ahead of what is cut: 2.5 % measured against "
-                  f"{FEM}, with half as much again"),
+                  source="2 % is asked of drawn cracks. The path of one that grew ends at its "
+                  "furthest broken bond, a part of a cell ahead of what is cut: 2.3 and 2.5 % "
+                  f"measured at 0.5 and 0.3 mm against {FEM} (with a path shorter by half a cell "
+                  "1.5 % at 0.3 mm); half as much again"),
             *(Check(m.name, "fallen", {3: 1e-6}, exact=True,
                     source="fewer bonds conduct less (Rayleigh's law of monotony)")
               for m in _GROWN),

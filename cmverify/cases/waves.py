@@ -3,6 +3,9 @@
 Plane waves are measured where the field is the exact discrete one: in the middle of a body that
 one fills, before the edges are heard of there. Its frequency is then the lattice's and Verlet's
 together, sin²(ω Δt/2) = λ(k) Δt²/4, to rounding, with λ from the energy of single bonds.
+
+Lamb's problem has a closed form (`references.analytic.lamb`), the speed of Rayleigh's wave is the
+root of his equation: both stand for finite elements here, which would bring errors of their own.
 """
 
 from __future__ import annotations
