@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array, Indices, Mask
 from ..errors import SceneError
 from ..geometry import Where, select
+from ..magnitude import STRAINS, outside
 from ..material import ChiralModuli, ElasticModuli, Family, PolarModuli
 from ..material.strains import elongations
 from ..operators import segments
@@ -131,6 +132,7 @@ class Breakable:
         self.pair = family.weight[:half] * family.cell_area**2
         axial = 0.5 * moduli.normal[:half] / family.length[:half]
         shear = 0.5 * moduli.shear[:half] / family.length[:half]
+        _require_range(self.critical, axial * family.length[:half] ** 2)
         arm = 0.5 * family.length[:half] / family.spacing
         terms = [family.normal[:half], arm, axial, shear]
         #: |ξ| times the strains that temperatures cause by themselves at unit load, (2, half, N).
@@ -348,6 +350,14 @@ def _thickness(discretisation: Discretisation, half: int) -> Array:
     scene = discretisation.scene
     varying = thickness.factors(scene, discretisation.lattice, discretisation.bonds)
     return thickness.of_phases(scene)[None, :1] if varying is None else varying.whole[:half]
+
+
+def _require_range(critical: Array, energy: Array) -> None:
+    """Refuse energies at which bonds would break at strains that are no numbers any more."""
+    stiff = np.sqrt(energy.max())
+    for size in (critical.min(), critical.max()):
+        if wrong := outside(float(np.sqrt(size) / stiff), STRAINS):
+            raise SceneError(f"the strain at which bonds break is {wrong}")
 
 
 def _refuse_negative(moduli: ElasticModuli, criterion: Criterion) -> None:

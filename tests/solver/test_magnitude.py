@@ -9,12 +9,14 @@ from solver import (
     Family,
     Inclusion,
     Load,
+    Programme,
     Scene,
     SceneError,
     Support,
     disc,
     rectangle,
 )
+from solver.fracture import grow
 from solver.magnitude import MODULI, outside
 
 SOLID = ElasticTensor.isotropic(1.0, 0.2)
@@ -85,3 +87,11 @@ def test_within_the_bounds_units_make_no_difference(modulus, unit):
         return solution.displacement / unit
 
     np.testing.assert_allclose(solve(modulus, unit), solve(1.0, 1.0), rtol=1e-9, atol=1e-15)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("size", [1e-300, 1e300])
+def test_critical_energies(size):
+    scene = Scene(rectangle(6, 4), 1.0, SOLID, [HELD], m=2)
+    with pytest.raises(SceneError, match="strain at which bonds break is of the size"):
+        grow(scene, np.full(scene.family().size, size), Programme(), max_solves=2)
