@@ -27,7 +27,7 @@ REMOTE = (1.0, 0.0, 0.0)
 HORIZON_CELLS = 3
 #: Twice what a family at m = 3 reaches: state-based models see their neighbours' families too.
 LAYER_CELLS = 6.5
-LADDER = {Level.QUICK: (40,), Level.STANDARD: (20, 40), Level.PAPER: (20, 40, 80)}
+LADDER = {Level.QUICK: (20, 40), Level.STANDARD: (20, 40), Level.PAPER: (20, 40, 80)}
 BESIDE = {**LADDER, Level.QUICK: ()}
 
 
