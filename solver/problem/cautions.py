@@ -212,25 +212,35 @@ def points_held(
 def thin_members(lattice: Lattice, m: float, surface: Surface) -> tuple[str, ...]:
     """Says so if parts of the body are thinner than two horizons."""
     mask = lattice.mask
-    core = _core(mask, m)
-    thin = mask.copy()
-    if core.any():
-        away = ndimage.distance_transform_edt(~core)
-        # A corner of 60° is two horizons away from what a disc of one horizon fills.
-        thin &= away > 2.0 * m
-        thin |= _necks(mask & (away >= m), mask & (away < m))
+    thin = _thin(mask, m)
     if not thin.any():
         return ()
-    labels, count = ndimage.label(thin, structure=np.ones((3, 3)))
-    across = np.minimum(_runs(mask), _runs(mask.T).T)
-    thickness = ndimage.median(across, labels, np.arange(1, count + 1))
-    worst = int(np.argmin(thickness))
-    x, y = _middle(lattice, labels == worst + 1)
+    # As thick as the disc that still passes; far from thin parts nothing tells.
+    rows, columns = np.nonzero(thin)
+    reach = int(3 * m) + 2
+    near = tuple(slice(max(0, i.min() - reach), i.max() + reach + 1) for i in (rows, columns))
+    across, least = int(np.ceil(2 * m)) - 1, thin[near]
+    while across > 1 and (left := _thin(mask[near], 0.5 * across) & thin[near]).any():
+        across, least = across - 1, left
+    labels, _ = ndimage.label(thin, structure=np.ones((3, 3)))
+    x, y = _middle(lattice, labels == labels[near][least].min())
+    plural = "cell" if across == 1 else "cells"
     return (
-        f"a member about ({x:.4g}, {y:.4g}) is {thickness[worst]:.3g} cells thick, less than two "
+        f"a member about ({x:.4g}, {y:.4g}) is {across} {plural} thick, less than two "
         f"horizons ({2 * m:g}): its stiffness is off (two cells thick by {_THIN[surface]} in "
         f"bending with surface={surface!r}); take a smaller spacing or horizon",
     )
+
+
+def _thin(mask: Mask, m: float) -> Mask:
+    """Parts of a body, but its corners, that discs of one horizon do not fill."""
+    core = _core(mask, m)
+    if not core.any():
+        return mask.copy()
+    away = ndimage.distance_transform_edt(~core)
+    # A corner of 60° is two horizons away from what a disc of one horizon fills.
+    thin = mask & (away > 2.0 * m)
+    return np.asarray(thin | _necks(mask & (away >= m), mask & (away < m)))
 
 
 def _core(mask: Mask, m: float) -> Mask:
@@ -331,16 +341,6 @@ def overlaps(bonds: Bonds, cracks: Sequence[Crack], displacement: Array) -> tupl
             f"touch in this model, a crack that closes would carry pressure"
         )
     return tuple(said)
-
-
-def _runs(mask: Mask) -> Array:
-    """How many cells lie in a row with each, along the second axis; 0 for empty ones."""
-    flat = np.pad(mask, ((0, 0), (0, 1))).ravel()
-    edges = np.diff(np.concatenate([[False], flat, [False]]).astype(np.int8))
-    start, stop = np.nonzero(edges == 1)[0], np.nonzero(edges == -1)[0]
-    found = np.zeros(len(flat))
-    found[flat] = np.repeat(stop - start, stop - start)
-    return found.reshape(mask.shape[0], -1)[:, :-1]
 
 
 def _middle(lattice: Lattice, cells: Mask) -> Array:

@@ -172,6 +172,10 @@ def said_of(region, m=3):
     return cautions.thin_members(lattice, m, "volume")
 
 
+def thickness(said):
+    return int(said[0].split(" is ")[1].split(" cell")[0])
+
+
 @few
 @given(st.floats(0.15, 1.1), st.floats(0.15, 0.5), st.floats(-0.3, 0.3), st.floats(0, 0.7))
 def test_a_neck_is_a_thin_member_however_short(length, width, height, turn):
@@ -181,6 +185,7 @@ def test_a_neck_is_a_thin_member_however_short(length, width, height, turn):
     said = said_of(squares[0] | neck | squares[1])
     assert len(said) == 1
     assert "less than two horizons" in said[0]
+    assert abs(thickness(said) - 10 * width) < 2
     wide = rectangle(length + 0.4, 0.9, (0.0, height / 3))
     assert said_of(squares[0] | wide | squares[1]) == ()
 
@@ -202,6 +207,27 @@ def test_a_ligament_beside_a_hole():
     said = said_of(rectangle(3.0, 3.0) - disc(0.5, (0.75, 0.0)))
     assert len(said) == 1
     assert "about (1.3" in said[0] or "about (1.4" in said[0]
+
+
+@pytest.mark.parametrize("m", [3, 5])
+def test_a_ligament_is_as_thick_as_where_it_is_thinnest(m):
+    # Beside a hole of five cells nine of them are hardly a neck.
+    for cells in range(1, 2 * m - 1):
+        said = said_of(rectangle(3.0, 3.0) - disc(0.5, (1.0 - 0.1 * cells, 0.0)), m)
+        assert len(said) == 1
+        # A disc half a cell larger may still touch every cell.
+        assert cells <= thickness(said) <= min(cells + 1, 2 * m - 1)
+
+
+@few
+@given(st.floats(0.1, 1.2), st.floats(0, 1.6), st.sampled_from([3, 5]))
+def test_a_member_said_to_be_thinner_than_two_horizons_is(width, turn, m):
+    said = said_of(rectangle(3.0, width, (0.0, 0.0), turn), m)
+    if said:
+        assert thickness(said) < 2 * m
+        assert abs(thickness(said) - 10 * width) < 2
+    else:
+        assert 10 * width > 2 * m - 1
 
 
 @pytest.mark.parametrize(("phase", "told"), [((0.5, 0.0), True), ((0.3, 0.0), False)])
