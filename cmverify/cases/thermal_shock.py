@@ -23,6 +23,8 @@ import numpy as np
 
 from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measurement, Method
 from cmverify.cases.common import adapters
+from cmverify.faults.changes import scaled
+from cmverify.faults.fault import Fault
 
 M = 3
 #: An alumina, as in computations of these tests: Pa, 1, 1/K, J/m², W/(m K), J/(m³ K).
@@ -153,7 +155,8 @@ CASES = (
         ),
         methods=(
             Method("bond/extrapolated", "bond", partial(quench, 1.0, "extrapolated"),
-                   {Level.STANDARD: (20, 40), Level.PAPER: (20, 40, 80)}, warm_up),
+                   {Level.QUICK: (20,), Level.STANDARD: (20, 40), Level.PAPER: (20, 40, 80)},
+                   warm_up),
             Method("bond/volume", "bond", partial(quench, 1.0, "volume"),
                    {Level.STANDARD: (20, 40), Level.PAPER: (20, 40, 80)},
                    warm_up),
@@ -173,4 +176,9 @@ CASES = (
         featured="bond/extrapolated",
         length="W",
     ),
+)  # fmt: skip
+
+FAULTS = (
+    Fault("intensity of edge cracks + 2 %", "references.analytic.edge_crack.intensity",
+          scaled(1.02), "closed forms"),
 )  # fmt: skip
