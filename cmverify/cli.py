@@ -365,7 +365,8 @@ def validity(
     if json:
         from json import dumps
 
-        typer.echo(dumps(coverage.as_data(found), indent=1, ensure_ascii=False))
+        data = [place for place in coverage.as_data(found) if not gaps or place["held"] == "0"]
+        typer.echo(dumps(data, indent=1, ensure_ascii=False))
         return
     lines = [line for line in coverage.lines(found) if not gaps or line[4] == "0"]
     names = ("physics", "calibration", "treatment", "m", "checks", "cases", "narrowest bound")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 from typing import Annotated, NoReturn
 
@@ -35,13 +36,15 @@ def sweep(
     folder = out or file.with_suffix("")
     try:
         points = grid.read(file)
-        screen.print(f"{len(points)} points")
+        number = itertools.count(1)
         found = run.run(
             points,
             folder,
             jobs=jobs or available_cores(),
             dask=dask,
-            listen=lambda point, state: screen.print(f"{state:<8} {_said(point.labels)}"),
+            listen=lambda point, state: screen.print(
+                f"{state:<8} {next(number)}/{len(points)}: {_said(point.labels)}"
+            ),
         )
     except (ValueError, ImportError, FolderError) as error:
         _end(f"error: {error}", 2, typer.colors.RED)

@@ -22,12 +22,13 @@ it.
 from __future__ import annotations
 
 import copy
+import functools
 import hashlib
 import itertools
 import json
 import tomllib
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +54,7 @@ class Point:
     Attributes
     ----------
     key : str
-        Of scene, settings and code: another of any of them is another point.
+        Of scene, drawings, settings and code: another of any of them is another point.
     labels : dict
         What the table says of it, by the names of the grid.
     path, text : str
@@ -164,19 +165,51 @@ def points(scene: Path, grid: Mapping[str, Any]) -> list[Point]:
     places: dict[str, str] = {name: _SHORT.get(name, name) for name in axes}
     order = sorted(axes, key=lambda name: places[name].count("."))
     found, seen = [], set()
+    drawn = functools.cache(_contents)
     for chosen in itertools.product(*axes.values()):
         labels = {name: label for name, (label, _) in zip(axes, chosen, strict=True)}
         given = {name: value for name, (_, value) in zip(axes, chosen, strict=True)}
         changes = tuple((places[name], given[name]) for name in order)
-        said = json.dumps([text, changes, source_fingerprint()], sort_keys=True, default=str)
+        point = Point("", labels, str(base.path), text, changes)
+        source = point.source()
+        file = scene_file.declared(source)
+        _require_no_checkpoint(file, source)
+        files = [drawn(base.path.parent / path) for path in _files(source.data)]
+        said = json.dumps([text, changes, files, source_fingerprint()], sort_keys=True, default=str)
         key = hashlib.sha256(said.encode()).hexdigest()[:20]
         if key in seen:
             raise SceneFileError(f"the grid has {labels} twice")
         seen.add(key)
-        point = Point(key, labels, str(base.path), text, changes)
-        scene_file.declared(point.source())
-        found.append(point)
+        found.append(replace(point, key=key))
     return found
+
+
+def _require_no_checkpoint(file: Any, source: Source) -> None:
+    """Points that go on from one file would take each other's states."""
+    for name in type(file).model_fields:
+        if getattr(getattr(file, name), "checkpoint", None) is not None:
+            raise source.error(
+                (name, "checkpoint"), "the points of a sweep would share it: leave it out"
+            )
+
+
+def _files(data: Any) -> Iterator[str]:
+    """Paths of the drawings that a scene names."""
+    if isinstance(data, Mapping):
+        if data.get("shape") == "file":
+            yield str(data["path"])
+        data = list(data.values())
+    if isinstance(data, list):
+        for item in data:
+            yield from _files(item)
+
+
+def _contents(path: Path) -> str:
+    """Hash of a file; that it cannot be read is said when the body is built."""
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError:
+        return ""
 
 
 def _values(name: str, given: Any) -> list[tuple[Any, Any]]:

@@ -37,6 +37,10 @@ WRONG = {
     "speed": [["--level", "nosuch"], ["--out", "file/x"]],
     "stability": [["--material", "nosuch"], ["--m", "nan", "--material", "silicon"],
                   ["--material", "silicon", "--out", "file/x"]],
+    "sweep": [["missing.toml"], ["broken.toml"], ["folder"], ["scene.toml"],
+              ["sweep.toml", "--jobs", "-1"], ["sweep.toml", "--out", "file"],
+              ["sweep.toml", "--out", "file/x"]],
+    "validity": [["nosuch"], ["--out", "missing"], ["--out", "file"]],
 }  # fmt: skip
 
 
@@ -49,6 +53,7 @@ def here(tmp_path, monkeypatch):
     (tmp_path / "folder.toml").mkdir()
     (tmp_path / "broken.toml").write_bytes(b"\xff\xfe[")
     (tmp_path / "scene.toml").write_text(SMALL, encoding="utf-8")
+    (tmp_path / "sweep.toml").write_text('scene = "scene.toml"\n[grid]\nm = [3]\n')
     return tmp_path
 
 

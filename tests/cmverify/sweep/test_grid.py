@@ -54,6 +54,23 @@ def test_the_points_of_a_file_run_with_the_last_setting_fastest(scene):
     assert [p.key for p in grid.read(path)] == [p.key for p in points]
 
 
+def test_a_drawing_that_has_changed_is_another_point(scene):
+    drawing = scene.with_name("plate.dxf")
+    grids = {"region": {"drawn": {"shape": "file", "path": drawing.name}}}
+    keys = set()
+    for text in (None, "one", "another"):
+        if text is not None:
+            drawing.write_text(text)
+        keys.add(grid.points(scene, grids)[0].key)
+    assert len(keys) == 3
+
+
+def test_points_share_no_checkpoint(scene):
+    run = {"increment": 0.1, "stop": 1.0, "G1": 1.0, "checkpoint": "state.npz"}
+    with pytest.raises(SceneFileError, match="would share it"):
+        grid.points(scene, {"fracture": {"run": run}})
+
+
 def test_what_is_changed_in_a_material_comes_after_the_material(scene):
     wood = {"kind": "orthotropic", "E1": 2.0, "E2": 1.0, "G12": 0.5, "nu12": 0.3}
     points = grid.points(scene, {"angle": [0, 30], "material": {"wood": wood}})
