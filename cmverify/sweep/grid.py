@@ -173,7 +173,7 @@ def points(scene: Path, grid: Mapping[str, Any]) -> list[Point]:
         point = Point("", labels, str(base.path), text, changes)
         source = point.source()
         file = scene_file.declared(source)
-        _require_no_checkpoint(file, source)
+        _require_own_files(file, source)
         files = [drawn(base.path.parent / path) for path in _files(source.data)]
         said = json.dumps([text, changes, files, source_fingerprint()], sort_keys=True, default=str)
         key = hashlib.sha256(said.encode()).hexdigest()[:20]
@@ -184,13 +184,14 @@ def points(scene: Path, grid: Mapping[str, Any]) -> list[Point]:
     return found
 
 
-def _require_no_checkpoint(file: Any, source: Source) -> None:
-    """Points that go on from one file would take each other's states."""
+def _require_own_files(file: Any, source: Source) -> None:
+    """Points that go on from one file, or write to one, would take each other's states."""
     for name in type(file).model_fields:
-        if getattr(getattr(file, name), "checkpoint", None) is not None:
-            raise source.error(
-                (name, "checkpoint"), "the points of a sweep would share it: leave it out"
-            )
+        for key in ("checkpoint", "series"):
+            if getattr(getattr(file, name), key, None) is not None:
+                raise source.error(
+                    (name, key), f"the points of a sweep would share a {key}: leave it out"
+                )
 
 
 def _files(data: Any) -> Iterator[str]:

@@ -67,8 +67,11 @@ def test_a_drawing_that_has_changed_is_another_point(scene):
 
 def test_points_share_no_checkpoint(scene):
     run = {"increment": 0.1, "stop": 1.0, "G1": 1.0, "checkpoint": "state.npz"}
-    with pytest.raises(SceneFileError, match="would share it"):
+    with pytest.raises(SceneFileError, match="would share a checkpoint"):
         grid.points(scene, {"fracture": {"run": run}})
+    wave = {"end": 1.0, "series": "frames"}
+    with pytest.raises(SceneFileError, match="would share a series"):
+        grid.points(scene, {"waves": {"run": wave}})
 
 
 def test_what_is_changed_in_a_material_comes_after_the_material(scene):
