@@ -479,9 +479,13 @@ def solve(
         check_writable(base)
         with share_done(screen, request.analysis) as tell:
             result = request.run(tell)
-        beside = comparison.compare(request, result) if comparing else None
         said, paths = result.summary(), result.write(base)
-        if beside is not None:
+        beside = None
+        if comparing:
+            try:
+                beside = comparison.compare(request, result)
+            except ValueError as error:
+                _refuse(f"{error}; the scene's own result is in {', '.join(map(str, paths))}")
             paths = (*paths, *beside.write(base))
     except ValueError as error:
         _refuse(str(error))

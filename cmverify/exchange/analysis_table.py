@@ -17,7 +17,8 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import Field, StrictBool, create_model
 
 from cmverify.exchange.meanings import meanings
-from cmverify.exchange.model import Fracture, SceneFile, Table
+from cmverify.exchange.model import Fracture, SceneFile
+from cmverify.exchange.table import Table
 from cmverify.exchange.values import (
     Condition,
     Count,

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cmverify.exchange import budget, comparison, model
+from cmverify.exchange import body_tables, budget, comparison, model
 from cmverify.exchange.model import SceneFile
 from cmverify.exchange.output import along, check_fields
 from cmverify.exchange.refusal import SceneFileError, Source
@@ -259,7 +259,7 @@ def _shape(table: Any, folder: Path, step: float) -> Region:
     return shape
 
 
-def _inclusion(table: model.Inclusion, material: Any, folder: Path, step: float) -> Inclusion:
+def _inclusion(table: body_tables.Inclusion, material: Any, folder: Path, step: float) -> Inclusion:
     from solver import ExpansionTensor, Inclusion
 
     own = material if table.material is None else _material(table.material)

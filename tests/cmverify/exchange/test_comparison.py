@@ -121,6 +121,39 @@ where = "x > 0.999"
         assert max(one.l2, one.largest, one.own) < 1e-9, one
 
 
+def test_what_vanishes_is_noted(tmp_path):
+    """No flux, but a temperature: there is no share of nothing."""
+    text = f"""{BODY.split("[[region]]")[0].replace("0.08", "0.25")}
+[region]
+shape = "rectangle"
+width = 2.0
+height = 1.0
+[material]
+kind = "conductivity"
+tensor = [[2.0, 0.0], [0.0, 1.0]]
+[[support]]
+kind = "edge"
+where = "x < -0.999"
+temperature = 0.0
+"""
+    found = compared(tmp_path, text)
+    assert found.differences == []
+    assert [note.split()[1] for note in found.notes] == ["temperature", "flux"]
+
+
+def test_a_result_is_kept_where_finite_elements_refuse(tmp_path, monkeypatch):
+    def refuse(*_):
+        raise ValueError("no mesh")
+
+    monkeypatch.setattr(comparison, "compare", refuse)
+    path = tmp_path / "scene.toml"
+    path.write_text(BODY.replace("0.08", "0.25") + HEAT, encoding="utf-8")
+    found = CliRunner().invoke(app, ["solve", str(path)])
+    assert found.exit_code == 2
+    assert "no mesh; the scene's own result is in" in found.output
+    assert (tmp_path / "scene.vtu").is_file()
+
+
 def test_heat_in_two_solids(tmp_path):
     temperature, flux = compared(tmp_path, BODY + HEAT).differences
     assert temperature.l2 < 0.06, temperature

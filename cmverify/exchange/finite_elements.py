@@ -1,0 +1,227 @@
+"""A scene file's scene as finite elements see it: mesh, solids, supports and loads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+if TYPE_CHECKING:
+    from cmverify.exchange.request import Request
+    from references.fem.general import GeneralSolution
+    from solver.arrays import Array
+
+
+def solved(request: Request, size: float) -> GeneralSolution:
+    """The scene of a request by finite elements of a size (m).
+
+    Raises
+    ------
+    ValueError, FloatingPointError, RuntimeError
+        If there is no such mesh, or the equations have no solution.
+    """
+    from references.fem.general import Acting, solve
+    from references.fem.polygons import polygons
+
+    scene = request.scene
+    body, solids = _shapes(request, size)
+    parts = [
+        (shapely.get_coordinates(part.exterior)[:-1],
+         [shapely.get_coordinates(hole)[:-1] for hole in part.interiors])
+        for solid in solids for part in shapely.get_parts(solid) if part.area > 0
+    ]  # fmt: skip
+    cracks = [
+        segment
+        for crack in scene.cracks
+        for segment in _within(shapely.LineString(crack.points), body)
+    ]
+    mesh = polygons(parts, size, cracks, tip_size=0.1 * size if cracks else None)
+    solid = np.zeros(len(mesh.triangles), dtype=np.int64)
+    x, y = mesh.points[mesh.triangles].mean(axis=1).T
+    for k, inclusion in enumerate(scene.inclusions, start=1):
+        solid[inclusion.region.contains(x, y)] = k
+    materials = [scene.material, *(inclusion.material for inclusion in scene.inclusions)]
+    name = "voigt" if hasattr(scene.material, "voigt") else "matrix"
+    return solve(
+        mesh,
+        np.stack([getattr(material, name) for material in materials]),
+        solid,
+        _held(request, shapely.boundary(body)),
+        Acting(*_loads(request, mesh.points, mesh.triangles)),
+        _thickness(request),
+    )
+
+
+def _shapes(request: Request, size: float) -> tuple[Any, list[Any]]:
+    """The body, and what of it each solid takes, the scene's own first; later ones win."""
+    scene = request.scene
+    body = scene.region.outline(0.5 * size)
+    left, solids = body, []
+    for inclusion in reversed(scene.inclusions):
+        own = inclusion.region.outline(0.5 * size)
+        solids.append(shapely.intersection(left, own))
+        left = shapely.difference(left, own)
+    return body, [left, *reversed(solids)]
+
+
+def _within(line: Any, body: Any) -> list[Any]:
+    found = []
+    for piece in shapely.get_parts(shapely.intersection(line, body)):
+        points = shapely.get_coordinates(piece)
+        if isinstance(piece, shapely.LineString) and piece.length > 0:
+            found += [(tuple(a), tuple(b)) for a, b in pairwise(points.tolist())]
+    return found
+
+
+def _value(value: Any, x: Array, y: Array, components: int) -> Array:
+    """A number, list or formula as (components, *x.shape)."""
+    if callable(value):
+        found = np.asarray(value(x.ravel(), y.ravel()), dtype=float)
+    else:
+        found = np.broadcast_to(np.asarray(value, dtype=float), (x.size, components))
+    return np.moveaxis(found.reshape(*x.shape, components), -1, 0)
+
+
+def _where(condition: Any, x: Array, y: Array) -> Array:
+    if condition is None:
+        return np.ones(x.shape, dtype=bool)
+    return np.asarray(condition(x.ravel(), y.ravel()), dtype=bool).reshape(x.shape)
+
+
+def _held(request: Request, edge: Any) -> Callable[[Array, Any], Array]:
+    physics, spacing = request.scene.physics, request.scene.spacing
+    components = 2 if len(physics.unknowns) > 1 else 1
+
+    def held(nodes: Array, on_edge: Any) -> Array:
+        values = np.full((len(nodes), components), np.nan)
+        x, y = nodes.T
+        for table in request.file.support:
+            if table.layer_cells is not None:
+                depth = shapely.distance(edge, shapely.points(x, y))
+                chosen = depth <= table.layer_cells * spacing * (1 + 1e-9)
+            else:
+                chosen = _where(table.where, x, y)
+            if table.kind == "edge":
+                chosen &= on_edge
+            for name, value in table.values.items():
+                if name == "rotation":
+                    continue
+                first = {"u2": 1}.get(name, 0)
+                width = 2 if name == "displacement" else 1
+                given = _value(value, x[chosen], y[chosen], width)
+                values[chosen, first : first + width] = given.T
+        return values
+
+    return held
+
+
+def _thickness(request: Request) -> Callable[..., Array] | None:
+    scene = request.scene
+    each = [inclusion.thickness for inclusion in scene.inclusions]
+    if scene.thickness is None and all(one is None for one in each):
+        return None
+
+    def thickness(x: Array, y: Array, solid: Any) -> Array:
+        own = 1.0 if scene.thickness is None else scene.thickness
+        found = _value(own, x, y, 1)[0].copy()
+        for k, one in enumerate(each, start=1):
+            if one is not None:
+                found[solid == k] = one
+        return found
+
+    return thickness
+
+
+def _loads(request: Request, points: Array, triangles: Any) -> tuple[Any, ...]:
+    """What acts: per volume, on edges, at points, and strains without stress."""
+    scene = request.scene
+    components = 2 if len(scene.physics.unknowns) > 1 else 1
+    tolerance = 1e-6 * scene.spacing
+    volume: list[Any] = []
+    edges: list[Any] = []
+    places: list[Any] = []
+    strains: list[Any] = []
+    for table, load in zip(request.file.load, scene.loads, strict=True):
+        if table.kind in ("body_force", "source", "current"):
+            volume.append(
+                lambda x, y, t=table: _value(t.value, x, y, components) * _where(t.where, x, y)
+            )
+        elif table.kind == "lead":
+            area = _area(points, triangles, table.where)
+            volume.append(lambda x, y, t=table, a=area: t.value / a * _where(t.where, x, y)[None])
+        elif table.kind == "stress":
+            edges.append(lambda x, y, n1, n2, t=table: _pull(t, x, y, n1, n2))
+        elif table.kind == "flux":
+            edges.append(
+                lambda x, y, n1, n2, t=table: (
+                    -(_value(t.value, x, y, 2) * (n1, n2)).sum(axis=0)[None] * _where(t.where, x, y)
+                )
+            )
+        elif table.kind == "traction":
+            edges.append(
+                lambda x, y, n1, n2, t=table: _value(t.value, x, y, 2) * _along(t, x, y, tolerance)
+            )
+        elif table.kind in ("point", "line"):
+            assert load.points is not None
+            at, force = load.points(scene.spacing)
+            places.append((at, force * _thick_at(request, at)))
+        else:
+            strains.append(table)
+
+    def strain(x: Array, y: Array, solid: Any) -> Array:
+        from solver import ExpansionTensor
+
+        total = np.zeros((3, *x.shape))
+        for table in strains:
+            change = _value(table.value, x, y, 1)[0]
+            own = np.asarray(ExpansionTensor(table.expansion).voigt)
+            voigts = [own] + [
+                own if one.expansion is None else np.asarray(one.expansion.voigt)
+                for one in scene.inclusions
+            ]
+            total += np.moveaxis(np.stack(voigts)[solid], -1, 0) * change
+        return total
+
+    return volume, edges, places, strain if strains else None
+
+
+def _thick_at(request: Request, at: Array) -> Array:
+    function = _thickness(request)
+    if function is None:
+        return np.ones((len(at), 1))
+    solid = np.zeros(len(at), dtype=np.int64)
+    for k, inclusion in enumerate(request.scene.inclusions, start=1):
+        solid[inclusion.region.contains(*at.T)] = k
+    return function(*at.T, solid)[:, None]
+
+
+def _pull(table: Any, x: Array, y: Array, n1: Array, n2: Array) -> Array:
+    s11, s22, s12 = _value(table.value, x, y, 3)
+    return np.stack([s11 * n1 + s12 * n2, s12 * n1 + s22 * n2]) * _where(table.where, x, y)
+
+
+def _along(table: Any, x: Array, y: Array, tolerance: float) -> Array:
+    """Whether points lie on the straight line of a traction."""
+    start, end = np.array(table.start), np.array(table.end)
+    length = float(np.hypot(*(end - start)))
+    along = ((x - start[0]) * (end - start)[0] + (y - start[1]) * (end - start)[1]) / length
+    across = ((x - start[0]) * (end - start)[1] - (y - start[1]) * (end - start)[0]) / length
+    on = (np.abs(across) <= tolerance) & (along >= -tolerance) & (along <= length + tolerance)
+    return np.asarray(on)
+
+
+def _area(points: Array, triangles: Any, where: Any) -> float:
+    """Area of the part of a mesh in which a condition is true, by many points a triangle."""
+    corners = points[triangles]
+    a, b, c = (corners[:, k] for k in range(3))
+    twice = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+    total, count = 0.0, 12
+    grid = [(i, j) for i in range(count) for j in range(count - i)]
+    for i, j in grid:
+        u, v = (i + 1 / 3) / count, (j + 1 / 3) / count
+        x, y = (a + u * (b - a) + v * (c - a)).T
+        total += float((twice * _where(where, x, y)).sum())
+    return 0.5 * total / len(grid)
