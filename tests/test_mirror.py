@@ -58,6 +58,7 @@ ELSEWHERE = {
     "cmverify/exchange/export.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/exchange/compare_command.py": "tests/cmverify/exchange/test_compare.py",
     "cmverify/exchange/statement.py": "tests/cmverify/exchange/test_case_export.py",
+    "cmverify/exchange/beforehand.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/exchange/body_tables.py": "tests/cmverify/exchange/test_model.py",
     "cmverify/exchange/finite_elements.py": "tests/cmverify/exchange/test_comparison.py",
     "cmverify/exchange/table.py": "tests/cmverify/exchange/test_model.py",

@@ -77,17 +77,23 @@ def begun(folder: Path) -> set[str]:
 
 def _record(point: Point) -> dict[str, Any]:
     from cmverify.exchange import comparison, scene_file
+    from cmverify.exchange.beforehand import CostError
 
     begun = time.perf_counter()
     refused, values = "", {}
     try:
-        request = scene_file.request_of(point.source())
+        # How long it may take is for those to say who ask for many.
+        request = scene_file.request_of(point.source(), seconds=math.inf)
         result = request.run()
         values = quantities(result)
         if request.file.compare is not None:
             for item in comparison.compare(request, result).differences:
                 values[f"{item.quantity} off finite elements"] = item.l2
+    except CostError:
+        raise  # what another machine could do
     except ValueError as error:
+        if isinstance(error.__cause__, MemoryError):
+            raise
         # What a model cannot answer is an answer about the model.
         refused = " ".join(str(error).split())
     return {

@@ -11,7 +11,9 @@ import pytest
 from typer.testing import CliRunner
 
 from cmverify.cli import app
+from cmverify.exchange import budget
 from cmverify.sweep import grid, run, work
+from solver.analyses import statics
 from tests.cmverify.sweep.test_grid import SCENE
 
 GRID = {"m": [2, 3], "surface": ["volume", "none"]}
@@ -31,6 +33,24 @@ def states(listened):
 def finished(folder: Path) -> Counter:
     lines = [line.split() for line in (folder / "sweep.log").read_text().splitlines()]
     return Counter(key for what, key, _ in lines if what == "finished")
+
+
+@pytest.mark.parametrize("when", ["before", "meanwhile"])
+def test_too_little_memory_is_no_answer_of_the_model(scene, tmp_path, monkeypatch, when):
+    def none(*_, **__):
+        raise MemoryError
+
+    (tmp_path / "points").mkdir()
+    (point,) = grid.points(scene, {"m": [2]})
+    with monkeypatch.context() as patch:
+        if when == "before":
+            patch.setattr(budget, "free_memory", lambda: 1.0)
+        else:
+            patch.setattr(statics, "solve", none)
+        with pytest.raises(ValueError, match="memory"):
+            work.solve(point, str(tmp_path))
+    assert work.load(tmp_path, point.key) is None
+    assert work.solve(point, str(tmp_path))["refused"] == ""
 
 
 def test_one_row_a_point_and_none_twice(scene, tmp_path, monkeypatch):
