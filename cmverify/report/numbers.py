@@ -80,7 +80,7 @@ class Measurement(BaseModel):
     """One method at one resolution."""
 
     method: str
-    kind: Literal["bond", "fem", "exact"]
+    kind: Literal["bond", "fem", "exact", "other"]
     resolution: int = Field(description="spacing or element size is the case's length over it")
     unknowns: int | None
     quantities: dict[str, Figure] = Field(description="figures by the names in the case")
@@ -96,7 +96,7 @@ class Point(BaseModel):
     """One measurement in the work-precision diagram."""
 
     method: str
-    kind: Literal["bond", "fem", "exact"]
+    kind: Literal["bond", "fem", "exact", "other"]
     resolution: int
     unknowns: int
     seconds: Figure

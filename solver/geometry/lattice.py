@@ -195,6 +195,11 @@ class Lattice:
         """Centres in the user's coordinates, shape (N, 2), m."""
         return self.points + self.shift
 
+    def middle(self, mask: Mask) -> Array:
+        """Mean place of some particles, (N,), in the user's coordinates; rounding of 0 is 0."""
+        found = self.places[mask].mean(axis=0)
+        return np.where(np.abs(found) < 1e-9 * self.spacing, 0.0, found)
+
     @cached_property
     def edge_distance(self) -> Array:
         """Distance of each particle to the body's edge, shape (N,), m."""

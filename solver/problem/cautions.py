@@ -160,7 +160,7 @@ def thin_layers(lattice: Lattice, prescribed: Mask, m: float) -> tuple[str, ...]
     if not len(thin):
         return ()
     worst = thin[np.argmin(depth[thin])]
-    x, y = _middle(lattice, labels == worst + 1)
+    x, y = lattice.middle((labels == worst + 1)[lattice.mask])
     more = f" (and in {len(thin) - 1} other places)" if len(thin) > 1 else ""
     return (
         f"what is prescribed about ({x:.4g}, {y:.4g}){more} lies {depth[worst]:.2g} cell(s) deep, "
@@ -223,7 +223,7 @@ def thin_members(lattice: Lattice, m: float, surface: Surface) -> tuple[str, ...
     while across > 1 and (left := _thin(mask[near], 0.5 * across) & thin[near]).any():
         across, least = across - 1, left
     labels, _ = ndimage.label(thin, structure=np.ones((3, 3)))
-    x, y = _middle(lattice, labels == labels[near][least].min())
+    x, y = lattice.middle((labels == labels[near][least].min())[lattice.mask])
     plural = "cell" if across == 1 else "cells"
     return (
         f"a member about ({x:.4g}, {y:.4g}) is {across} {plural} thick, less than two "
@@ -341,12 +341,3 @@ def overlaps(bonds: Bonds, cracks: Sequence[Crack], displacement: Array) -> tupl
             f"touch in this model, a crack that closes would carry pressure"
         )
     return tuple(said)
-
-
-def _middle(lattice: Lattice, cells: Mask) -> Array:
-    """Mean position of some cells in the user's coordinates."""
-    x, y = lattice.axes
-    rows, columns = np.nonzero(cells)
-    found = np.array([x[columns].mean(), y[rows].mean()]) + lattice.shift
-    # A mean that is zero but for rounding.
-    return np.where(np.abs(found) < 1e-9 * lattice.spacing, 0.0, found)

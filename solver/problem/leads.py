@@ -222,6 +222,5 @@ def _beside(lattice: Lattice, mask: Mask) -> Mask:
 
 
 def _middle(lattice: Lattice, mask: Mask) -> str:
-    middle = lattice.places[mask].mean(axis=0)
-    x, y = np.where(np.abs(middle) < 1e-9 * lattice.spacing, 0.0, middle)
+    x, y = lattice.middle(mask)
     return f"({x:.4g}, {y:.4g})"

@@ -12,6 +12,7 @@ from cmverify.cli import app
 from cmverify.exchange import compare
 from cmverify.exchange.answers import Answer, AnswerError
 from cmverify.judge.verdict import judge
+from cmverify.report.numbers import read
 
 HOLE = registry.get("hole-tractions-isotropic")
 POSE = HOLE.poses[0]
@@ -85,7 +86,10 @@ def test_numbers_are_judged_too(tmp_path, monkeypatch):
     run = CliRunner().invoke
     done = run(app, ["compare", "free-plates", "good.json"])
     assert done.exit_code == 0, done.output
-    numbers = json.loads((tmp_path / "comparison" / "results.json").read_text(encoding="utf-8"))
+    path = tmp_path / "comparison" / "results.json"
+    numbers = json.loads(path.read_text(encoding="utf-8"))
+    # Of the format that `report --schema` tells.
+    assert {m.kind for m in read(path).cases["free-plates"].measurements} == {"bond", "other"}
     rows = numbers["cases"]["free-plates"]["measurements"]
     assert {row["method"] for row in rows} == {"bond/mild 30°", "good"}
     assert (tmp_path / "comparison" / "index.html").is_file()

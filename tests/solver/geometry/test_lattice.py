@@ -54,6 +54,14 @@ def test_particles_run_along_rows():
     np.testing.assert_array_equal(order, np.arange(6))
 
 
+def test_the_middle_of_some_particles():
+    lattice = Lattice(rectangle(0.7, 0.5), 0.1, 3)
+    all_of_it = np.ones(lattice.count, dtype=bool)
+    assert lattice.middle(all_of_it).tolist() == [0.0, 0.0]
+    right = lattice.places[:, 0] > 0.05
+    np.testing.assert_allclose(lattice.middle(right), [0.2, 0.0], atol=1e-15)
+
+
 def test_edge_distance_is_the_region_s():
     lattice = Lattice(rectangle(1.0, 1.0), 0.1, 2)
     assert lattice.edge_distance.min() == pytest.approx(0.05)
