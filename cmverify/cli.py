@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import sys
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
@@ -13,9 +12,10 @@ from typer.core import TyperGroup
 
 import cmverify
 from cmverify.case import Level
-from cmverify.console import console, manner, speak
+from cmverify.console import console, interrupted, manner, refuse, speak
 from cmverify.exchange.command import new, schema
 from cmverify.exchange.compare_command import compare, export
+from cmverify.exchange.solve_command import solve
 from cmverify.faults.command import faults
 from cmverify.studies.anisotropy.command import material
 from cmverify.studies.speed.command import speed
@@ -34,7 +34,7 @@ class _Commands(TyperGroup):
 
         for name in cmverify.SIBLINGS:
             if (other := cmverify.foreign(name)) and "doctor" not in sys.argv[1:2]:
-                _refuse(
+                refuse(
                     f"another package called {name} was imported first, from {other}: start "
                     f"cmverify without it (cmverify doctor says more)"
                 )
@@ -42,16 +42,16 @@ class _Commands(TyperGroup):
             with in_good_order():
                 return super().invoke(ctx)
         except KeyboardInterrupt:
-            _interrupted("nothing is left half-written; the same command starts anew")
+            interrupted("nothing is left half-written; the same command starts anew")
         except (typer.Exit, typer.Abort, UsageError):
             raise
         except MemoryError:
-            _interrupted("there is not enough memory for it")
+            interrupted("there is not enough memory for it")
         except Exception as error:
             if manner().verbose:
                 raise
             said = " ".join(str(error).split())[:300]
-            _interrupted(
+            interrupted(
                 f"this should not have happened, {type(error).__name__}: {said} "
                 f"(cmverify --verbose … shows where)"
             )
@@ -64,12 +64,6 @@ app = typer.Typer(
     rich_markup_mode=None,
     help="Verify and time continuum-molecular models of anisotropic solids.",
 )
-
-
-class Compared(StrEnum):
-    """What a scene is solved with beside the lattice."""
-
-    FEM = "fem"
 
 
 def _complete(incomplete: str) -> list[str]:
@@ -113,7 +107,7 @@ def _manners(
     ] = False,
 ) -> None:  # fmt: skip
     if quiet and verbose:
-        _refuse("--quiet and --verbose: one of them")
+        refuse("--quiet and --verbose: one of them")
     speak(quiet, verbose)
 
 
@@ -122,6 +116,7 @@ app.command()(export)
 app.command()(faults)
 app.command()(new)
 app.command()(schema)
+app.command()(solve)
 app.command()(speed)
 app.command()(stability)
 app.command()(material)
@@ -160,16 +155,16 @@ def run(
 
     cases = _select(names)
     if jobs < 0:
-        _refuse(f"--jobs {jobs}: at least one worker is needed")
+        refuse(f"--jobs {jobs}: at least one worker is needed")
     if not timeout > 0:
-        _refuse(f"--timeout {timeout:g}: a measurement needs some time")
+        refuse(f"--timeout {timeout:g}: a measurement needs some time")
     try:
         if json is not None:
             folder.check_file(json)
         with folder.claimed(out):
             _run(cases, names, level, jobs, out, resume, timeout, json)
     except folder.FolderError as error:
-        _refuse(str(error))
+        refuse(str(error))
 
 
 def _run(  # type: ignore[no-untyped-def]
@@ -224,9 +219,9 @@ def _run(  # type: ignore[no-untyped-def]
         summary.save_info(info, out)
     except KeyboardInterrupt:
         done = sum(1 for task in plan if _recorded(out, task))
-        _interrupted(f"{done} of {len(plan)} measurements are finished and kept; {go_on}")
+        interrupted(f"{done} of {len(plan)} measurements are finished and kept; {go_on}")
     except OSError as error:
-        _interrupted(f"{error.strerror or error}; what is finished is kept; {go_on}")
+        interrupted(f"{error.strerror or error}; what is finished is kept; {go_on}")
     judged = summary.summarise(cases, records, info)
     terminal.print_verdicts(screen, judged)
     _write(_beside(judged, info, out, screen), info, out, json, screen)
@@ -259,7 +254,7 @@ def report(
         folder.check_file(out / "results.json")
         folder.check_file(json or out / "results.json")
     except folder.FolderError as error:
-        _refuse(str(error))
+        refuse(str(error))
     terminal.print_missing(screen, judged)
     _write(judged, info, out, json, screen)
     raise typer.Exit(0 if summary.all_passed(judged) else 1)
@@ -300,7 +295,7 @@ def precision(
             screen.print()
             shown += 1
     if not shown:
-        _refuse(f"{out} has no timed case of that name or quantity")
+        refuse(f"{out} has no timed case of that name or quantity")
     made = f"Level {info.level}, {info.jobs} × {info.threads} threads. {info.command}"
     screen.print(made, soft_wrap=True)
 
@@ -318,11 +313,11 @@ def _measure_precision(  # type: ignore[no-untyped-def]
 
     known = {method.name for case in cases for method in study.methods_of(case)}
     if strange := sorted(set(only) - known):
-        _refuse(f"no method is called {', '.join(strange)}; known: {', '.join(sorted(known))}")
+        refuse(f"no method is called {', '.join(strange)}; known: {', '.join(sorted(known))}")
     try:
         folder.check(out)
     except folder.FolderError as error:
-        _refuse(str(error))
+        refuse(str(error))
     screen = console()
     started = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
     load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
@@ -392,7 +387,7 @@ def errata(
     try:
         chosen = [paper.entry(number)] if number is not None else paper.entries()
     except KeyError as error:
-        _refuse(error.args[0])
+        refuse(error.args[0])
     if json:
         judged = [audit.judge(entry) for entry in chosen]
         typer.echo(audit.as_json(judged))
@@ -404,7 +399,7 @@ def errata(
         try:
             folder.check_file(page)
         except folder.FolderError as error:
-            _refuse(str(error))
+            refuse(str(error))
 
         failed = write_page([audit.judge(entry) for entry in chosen], page)
         typer.echo(f"{page}")
@@ -430,91 +425,6 @@ def doctor() -> None:
     raise typer.Exit(1 if "problem" in states else 0)
 
 
-@app.command()
-def solve(
-    scene: Annotated[Path, typer.Argument(metavar="SCENE.toml", help="Scene to solve.")],
-    out: Annotated[
-        Path | None, typer.Option(help="Path of the fields without suffix; the scene's name.")
-    ] = None,
-    max_memory: Annotated[
-        float | None, typer.Option(min=0.0, help="GiB it may take; most of what is free.")
-    ] = None,
-    max_minutes: Annotated[
-        float, typer.Option(min=0.0, help="Estimated minutes that a solve may take.")
-    ] = 15.0,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace files of an earlier run.")
-    ] = False,
-    compare: Annotated[
-        Compared | None, typer.Option(help="Solve the scene by finite elements, too.")
-    ] = None,
-) -> None:
-    """Do what a scene file asks for, and write its fields as .vtu and .npz."""
-
-    from rich.text import Text
-
-    from cmverify.exchange import comparison, scene_file
-    from cmverify.exchange.export import check_writable
-    from cmverify.exchange.output import existing
-    from cmverify.run.progress import share_done
-
-    screen = console()
-    if not scene.name or scene.is_dir():
-        _refuse(f"{scene} is a folder, and a scene is a file")
-    base = out or scene.with_suffix("")
-    try:
-        if out is not None and out.is_dir():
-            _refuse(f"--out names files without their suffix, and {out} is a folder")
-        if not overwrite and (there := existing(base)):
-            names = ", ".join(path.name for path in there)
-            _refuse(f"{base.parent} has {names} already: choose another --out, or --overwrite")
-        request = scene_file.request(
-            scene,
-            None if max_memory is None else max_memory * 2**30,
-            max_minutes * 60,
-        )
-        comparing = compare is not None or request.file.compare is not None
-        if comparing:
-            comparison.check(request)
-        check_writable(base)
-        with share_done(screen, request.analysis) as tell:
-            result = request.run(tell)
-        said, paths = result.summary(), result.write(base)
-        beside = None
-        if comparing:
-            try:
-                beside = comparison.compare(request, result)
-            except ValueError as error:
-                _refuse(f"{error}; the scene's own result is in {', '.join(map(str, paths))}")
-            paths = (*paths, *beside.write(base))
-    except ValueError as error:
-        _refuse(str(error))
-    except OSError as error:
-        _refuse(f"{base} cannot be written: {error.strerror or error}")
-    except KeyboardInterrupt:
-        _interrupted(
-            "no result was written; a run whose table names a checkpoint goes on from there with "
-            "the same command"
-        )
-    warnings = said.pop("warnings", ())
-    for name, value in said.items():
-        screen.print(f"{name.replace('_', ' '):<16}{_plain(value)}", soft_wrap=True)
-    for warning in warnings:
-        line = Text("warning         ", style="yellow").append(warning, style="default")
-        screen.print(line, soft_wrap=True)
-    if beside is not None:
-        from cmverify.report import terminal
-
-        terminal.print_differences(screen, beside)
-    screen.print("wrote", *map(str, paths), soft_wrap=True)
-
-
-def _plain(value: object) -> str:
-    if isinstance(value, float):
-        return f"{value:.5g}"
-    return ", ".join(map(_plain, value)) if isinstance(value, list | tuple) else str(value)
-
-
 def main() -> None:
     """Entry point of the `cmverify` script."""
     for stream in (sys.stdout, sys.stderr):
@@ -530,7 +440,7 @@ def _select(names: list[str] | None):  # type: ignore[no-untyped-def]
     try:
         return registry.select(names or [])
     except ValueError as error:
-        _refuse(str(error))
+        refuse(str(error))
 
 
 def _finished(out: Path):  # type: ignore[no-untyped-def]
@@ -544,13 +454,13 @@ def _finished(out: Path):  # type: ignore[no-untyped-def]
         known = {(case.name, method.name) for case in cases for method in case.methods}
         for case, method, _ in info.measured:
             if (case, method) not in known:
-                _refuse(
+                refuse(
                     f"the run in {out} measured {case} with {method}, which this version does not "
                     f"know: run it anew"
                 )
         return summary.summarise(cases, summary.complete(info, out), info), info
     except ValueError as error:
-        _refuse(str(error))
+        refuse(str(error))
 
 
 def _earlier(out: Path):  # type: ignore[no-untyped-def]
@@ -594,9 +504,9 @@ def _write(judged, info, out: Path, json: Path | None, screen) -> None:  # type:
             results.write_text(path, numbers)
         page = build(judged, info, out)
     except KeyboardInterrupt:
-        _interrupted(again)
+        interrupted(again)
     except OSError as error:
-        _interrupted(f"the report cannot be written ({error.strerror or error}): {again}")
+        interrupted(f"the report cannot be written ({error.strerror or error}): {again}")
     if not manner().quiet:
         screen.print(
             f"Report: {page}  (numbers: {out / 'results.json'}, fields: {out / 'fields'})",
@@ -614,15 +524,3 @@ def _recorded(out: Path, task: tuple[str, str, int]) -> bool:
     from cmverify.run import results
 
     return results.stem(out, *task).with_suffix(".json").is_file()
-
-
-def _refuse(message: str) -> NoReturn:
-    """Print an error and leave with code 2."""
-    typer.secho(f"error: {message}", fg=typer.colors.RED, err=True)
-    raise typer.Exit(2)
-
-
-def _interrupted(message: str) -> NoReturn:
-    """Say how to go on and leave with code 3."""
-    typer.secho(f"interrupted: {message}", fg=typer.colors.YELLOW, err=True)
-    raise typer.Exit(3)

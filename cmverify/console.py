@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -174,3 +174,19 @@ def _wider(to: Console, width: int) -> Console:
 def columns(*names: str, right: Sequence[str] = (), prose: Sequence[str] = ()) -> list[Column]:
     """Columns by their names, some of them numbers or prose."""
     return [replace(Column(n), right=n in right, prose=n in prose) for n in names]
+
+
+def refuse(message: str) -> NoReturn:
+    """Print an error and leave with code 2: the request is wrong."""
+    import typer
+
+    typer.secho(f"error: {message}", fg=typer.colors.RED, err=True)
+    raise typer.Exit(2)
+
+
+def interrupted(message: str) -> NoReturn:
+    """Say how to go on and leave with code 3."""
+    import typer
+
+    typer.secho(f"interrupted: {message}", fg=typer.colors.YELLOW, err=True)
+    raise typer.Exit(3)

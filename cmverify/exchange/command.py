@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated
 
 import typer
+
+from cmverify.console import refuse
 
 
 def new(
@@ -29,14 +31,14 @@ def new(
     if kind not in start_file.KINDS:
         near = difflib.get_close_matches(kind, start_file.KINDS, n=1)
         hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(start_file.KINDS)}"
-        _refuse(f"there is no kind {kind!r}; {hint}")
+        refuse(f"there is no kind {kind!r}; {hint}")
     path = out or Path(f"{kind}.toml")
     if path.exists() and not overwrite:
-        _refuse(f"{path} exists already: choose another --out, or --overwrite")
+        refuse(f"{path} exists already: choose another --out, or --overwrite")
     try:
         results.write_text(path, start_file.text(kind))
     except OSError as error:
-        _refuse(f"{path} cannot be written: {error.strerror or error}")
+        refuse(f"{path} cannot be written: {error.strerror or error}")
     typer.echo(f"wrote {path}; solve it with: cmverify solve {path}")
 
 
@@ -63,10 +65,5 @@ def schema(
         try:
             results.write_text(path, text)
         except OSError as error:
-            _refuse(f"{path} cannot be written: {error.strerror or error}")
+            refuse(f"{path} cannot be written: {error.strerror or error}")
         typer.echo(f"wrote {path}")
-
-
-def _refuse(message: str) -> NoReturn:
-    typer.secho(f"error: {message}", fg=typer.colors.RED, err=True)
-    raise typer.Exit(2)

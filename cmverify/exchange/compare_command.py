@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any
 
 import typer
 
 from cmverify.case import Level
+from cmverify.console import refuse
 
 Problem = Annotated[
     str | None, typer.Option(help="Which of a case's problems; the first by default.")
@@ -51,9 +52,9 @@ def export(
         n = resolution_of(case, pose, level, resolution)
         paths = write_case(case, pose, n, out or Path(case.name))
     except ValueError as error:
-        _refuse(str(error))
+        refuse(str(error))
     except OSError as error:
-        _refuse(f"{out or name} cannot be written: {error.strerror or error}")
+        refuse(f"{out or name} cannot be written: {error.strerror or error}")
     screen.print("wrote", *map(str, paths), soft_wrap=True)
 
 
@@ -98,7 +99,7 @@ def compare(
         ours = judging.our_record(case, pose, n, run)
         found = judging.compare(case, pose, n, read, ours, held_to)
     except ValueError as error:
-        _refuse(str(error))
+        refuse(str(error))
     judged = summary.summarise([found.case], found.records)
     screen = console()
     terminal.print_verdicts(screen, judged)
@@ -110,7 +111,7 @@ def compare(
     try:
         page = _report(judged, _info(case.name, answers, problem, level, n, ours, out), out)
     except OSError as error:
-        _refuse(f"the page cannot be written to {out}: {error.strerror or error}")
+        refuse(f"the page cannot be written to {out}: {error.strerror or error}")
     screen.print(f"Page: {page}  (numbers: {out / 'results.json'})", soft_wrap=True)
     raise typer.Exit(0 if summary.all_passed(judged) else 1)
 
@@ -154,9 +155,3 @@ def _info(
         wall_seconds=ours.wall_seconds,
         environment=environment.describe().as_dict(),
     )
-
-
-def _refuse(message: str) -> NoReturn:
-    """Print an error and leave with code 2."""
-    typer.secho(f"error: {message}", fg=typer.colors.RED, err=True)
-    raise typer.Exit(2)

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from cmverify.console import refuse
+
 if TYPE_CHECKING:
     from cmverify.faults.table import Result
 
@@ -37,13 +39,10 @@ def faults(
     wanted = set(names or ())
     strange = wanted - {f.name for f in known} - {f.kind for f in known}
     if strange:
-        typer.secho(
-            f"error: no fault and no kind of faults is called {', '.join(sorted(strange))}; known "
-            f"kinds: {', '.join(sorted({f.kind for f in known}))}",
-            fg=typer.colors.RED,
-            err=True,
+        refuse(
+            f"no fault and no kind of faults is called {', '.join(sorted(strange))}; known "
+            f"kinds: {', '.join(sorted({f.kind for f in known}))}"
         )
-        raise typer.Exit(2)
     chosen = [f for f in known if not wanted or f.name in wanted or f.kind in wanted]
     screen = console()
     with screen.status("") as status:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import itertools
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated
 
 import typer
 
-from cmverify.console import console
+from cmverify.console import console, interrupted, refuse
 
 
 def sweep(
@@ -47,12 +47,11 @@ def sweep(
             ),
         )
     except (ValueError, ImportError, FolderError) as error:
-        _end(f"error: {error}", 2, typer.colors.RED)
+        refuse(str(error))
     except OSError as error:
-        _end(f"error: {error.strerror or error}", 2, typer.colors.RED)
+        refuse(str(error.strerror or error))
     except KeyboardInterrupt:
-        again = "finished points are kept; the same command goes on"
-        _end(f"interrupted: {again}", 3, typer.colors.YELLOW)
+        interrupted("finished points are kept; the same command goes on")
     refused = sum(bool(row["refused"]) for row in found.rows)
     screen.print(f"{len(found.rows)} of {len(points)} points are done, {refused} of them refused")
     for point, why in found.missing:
@@ -63,8 +62,3 @@ def sweep(
 
 def _said(labels: dict[str, object]) -> str:
     return ", ".join(f"{name} = {value}" for name, value in labels.items())
-
-
-def _end(message: str, code: int, colour: str) -> NoReturn:
-    typer.secho(message, fg=colour, err=True)
-    raise typer.Exit(code)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json as to_json
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, NoReturn
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
+
+from cmverify.console import refuse
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -44,14 +46,14 @@ def material(
 
     for path in (out, json):
         if path is not None and path.exists() and not overwrite:
-            _refuse(f"{path} exists already: choose another name, or --overwrite")
+            refuse(f"{path} exists already: choose another name, or --overwrite")
     if out is not None and out.suffix not in (".png", ".svg", ".pdf"):
-        _refuse(f"--out {out}: a figure is a .png, .svg or .pdf")
+        refuse(f"--out {out}: a figure is a .png, .svg or .pdf")
     given = {"--isotropic": isotropic, "--orthotropic": orthotropic, "--voigt": voigt,
              "--compliance": compliance, "SOLID": solid}  # fmt: skip
     said = {name: text for name, text in given.items() if text is not None}
     if len(said) != 1:
-        _refuse(f"give one solid: {', '.join(given)}")
+        refuse(f"give one solid: {', '.join(given)}")
     form, text = next(iter(said.items()))
     try:
         name = text if form == "SOLID" else f"{form[2:]} {text}"
@@ -66,9 +68,9 @@ def material(
         if out is not None:
             _figure(found, out)
     except ValueError as error:
-        _refuse(" ".join(str(error).split()))
+        refuse(" ".join(str(error).split()))
     except OSError as error:
-        _refuse(f"{error.filename or out or json} cannot be written: {error.strerror or error}")
+        refuse(f"{error.filename or out or json} cannot be written: {error.strerror or error}")
     show_all(console(), found)
     for path in (out, json):
         if path is not None:
@@ -208,8 +210,3 @@ def _margin(value: float) -> str:
     if value != value:
         return "none"
     return "−∞" if value == float("-inf") else f"{value:.2f}"
-
-
-def _refuse(message: str) -> NoReturn:
-    typer.secho(f"error: {message}", fg=typer.colors.RED, err=True)
-    raise typer.Exit(2)

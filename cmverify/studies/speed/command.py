@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from cmverify.case import Level
+from cmverify.console import refuse
 
 _RESOLUTION = {Level.QUICK: 60, Level.STANDARD: 120, Level.PAPER: 120}
 #: Cells along the side of the square whose modes are sought.
@@ -43,8 +44,7 @@ def speed(
     try:
         folder.check_file(out / "speed.json")
     except folder.FolderError as error:
-        typer.secho(f"error: {error}", fg=typer.colors.RED, err=True)
-        raise typer.Exit(2) from error
+        refuse(str(error))
     resolution = _RESOLUTION[level]
     tables: dict[str, list[Any]] = {}
     found: list[Verdict] = []

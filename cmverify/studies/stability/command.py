@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from cmverify.console import refuse
+
 if TYPE_CHECKING:
     from cmverify.case import Array
     from cmverify.studies.stability.assessments import Assessment
@@ -78,8 +80,7 @@ def stability(
         ]
         folder.check_file(out / "stability.html")
     except ValueError as error:
-        typer.secho(f"error: {error}", fg=typer.colors.RED, err=True)
-        raise typer.Exit(2) from error
+        refuse(str(error))
     _print(screen, verdicts)
     chosen = study or ([] if material else list(Study))
     fine = level == Fineness.STANDARD
