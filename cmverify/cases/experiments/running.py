@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial import cKDTree
 
 from cmverify.case import Array, Stage, Stages
 from cmverify.run import unfinished
@@ -212,6 +211,8 @@ def bridging(run: Growth) -> NDArray[np.int64]:
     Bonds at a small angle to a crack are hardly strained by its opening and break far behind its
     tip, the farther the tougher they are. A bond that crosses the paths twice parts nothing.
     """
+    from scipy.spatial import cKDTree
+
     bonds, horizon = run.bonds, run.scene.m * run.scene.spacing
     points = bonds.lattice.points
     whole = np.flatnonzero(bonds.strengths.ravel() > 0)
