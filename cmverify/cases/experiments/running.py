@@ -213,7 +213,7 @@ def bridging(run: Growth) -> NDArray[np.int64]:
     """
     from scipy.spatial import cKDTree
 
-    bonds, horizon = run.bonds, run.scene.m * run.scene.spacing
+    bonds = run.bonds
     points = bonds.lattice.points
     whole = np.flatnonzero(bonds.strengths.ravel() > 0)
     pieces = [
@@ -222,7 +222,9 @@ def bridging(run: Growth) -> NDArray[np.int64]:
     if not pieces:
         return np.zeros(0, dtype=np.int64)
     segments = np.vstack(pieces)
-    reach = horizon + float(np.hypot(*(segments[:, 2:] - segments[:, :2]).T).max())
+    # The longest bonds reach half a cell beyond the horizon.
+    longest = float(bonds.family.length.max())
+    reach = longest + float(np.hypot(*(segments[:, 2:] - segments[:, :2]).T).max())
     _, p, q = bonds.ends(whole)
     near = cKDTree(segments[:, :2]).query(points[p], distance_upper_bound=reach)[0] < reach
     whole, first, second = whole[near], points[p[near]], points[q[near]]
