@@ -114,8 +114,18 @@ def laid_out(scene: Any) -> Any:
 
 
 def free_particles(scene: Any) -> Array:
-    """Particles whose place (or temperature) is not prescribed, (P, 2), m."""
+    """Particles whose place (or temperature) is not prescribed, (P, 2), m.
+
+    Raises
+    ------
+    ValueError
+        If there are none: the problem has no answer to judge.
+    """
     parts = laid_out(scene)
+    if parts.held.all():
+        raise ValueError(
+            f"at a spacing of {scene.spacing:g} everything is prescribed: take a finer resolution"
+        )
     return np.asarray(parts.lattice.places[~parts.held])
 
 

@@ -45,7 +45,8 @@ def statics(surface: Surface = "volume", conductive: bool = False) -> None:
     for n in (8, 48 if conductive else 30):
         _square(n, conductive, surface).solve(tolerance=1e-2)
     if not conductive:
-        _square(8, conductive, surface, nu=1 / 3).solve(tolerance=1e-2)
+        for n in (8, 36):
+            _square(n, conductive, surface, nu=1 / 3).solve(tolerance=1e-2)
 
 
 @cache

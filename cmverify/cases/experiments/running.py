@@ -199,9 +199,9 @@ def circle(centre: ArrayLike, radius: float) -> Array:
 
 
 def uprights(at: Sequence[float], top: float) -> tuple[Array, Array]:
-    """Ordinates and abscissae of a reference curve of upright lines up to `top`."""
+    """Ordinates and abscissae of a reference curve of upright lines up to `top` from a ground."""
     x = np.repeat(np.asarray(at, dtype=float), 3)
-    y = np.tile([0.0, top, np.nan], len(at))
+    y = np.tile([0.0, top, 0.0], len(at))
     return y, x
 
 
