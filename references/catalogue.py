@@ -6,6 +6,7 @@ from references.generators import (
     MATERIALS,
     compact_tension_by_pins,
     compact_tension_growth,
+    compact_tension_paths,
     crack_tip_samples,
     heated_disc_samples,
     kink_factors,
@@ -243,6 +244,25 @@ def catalogue() -> dict[str, Reference]:
                 "ratios": [0.36, 0.4, 0.44, 0.48, 0.52],
                 "elements": 16,
             },
+        ),
+        Reference(
+            "compact-tension-paths",
+            "The same with the fibres askew: where the crack goes by the energy criterion",
+            _PAPER + ", Sect. 3.1.2; ASTM E399 (proportions)",
+            compact_tension_paths,
+            {
+                "material": "bone",
+                "degrees": [45.0, 60.0],
+                "width": 25.8e-3,
+                "ratio": 0.36,
+                "energies": [2106.0, 989.0],
+                "exponent": 8,
+                "step": 1e-3,
+                "steps": 4,
+                "elements": 20,
+            },
+            # A few minutes: its parts are tested by themselves.
+            spot=None,
         ),
     ]
     return {entry.name: entry for entry in entries}

@@ -1,18 +1,21 @@
 """How the stored references are made: each function returns arrays and their estimated errors."""
 
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from references.analytic.lekhnitskii import crack_tip_displacement
+from references.analytic.lekhnitskii import crack_tip_displacement, energy_release_rate
+from references.analytic.toughness import effective_energy, two_lobe_constants
 from references.analytic.voigt import isotropic_voigt, turned_axes
 from references.fem.conduction import steady_conduction
 from references.fem.cracked_plates import centre_crack, compact_tension, edge_crack
 from references.fem.elasticity import solve_elasticity
+from references.fem.energy_path import energy_path
 from references.fem.heterogeneous import heterogeneous_frequencies, interface_record
 from references.fem.kinks import kink_matrix, kink_mesh
-from references.fem.mesh import Mesh, crack_tip_disc, disc, rectangle
+from references.fem.mesh import Mesh, Segment, crack_tip_disc, disc, rectangle
 from references.fem.mesh_record import MeshRecord
 from references.fem.modes import in_plane_modes
 from references.fem.pinned import pulled_by_pins
@@ -311,6 +314,22 @@ def notched_plate(unit: float, young: float, poisson: float, size: float) -> Gen
     )
 
 
+def _specimen(
+    width: float, ratio: float, count: int, tip_size: float, grown: Sequence[Segment] = ()
+) -> tuple[Mesh, tuple[tuple[float, float], tuple[float, float]]]:
+    """A compact-tension mesh with `count` elements a side, and the centres of its pins."""
+    shift, radius, offset = -0.375 * width, 0.125 * width, 0.275 * width
+    centres = ((shift, -offset), (shift, offset))
+    mesh = rectangle(
+        1.25 * width, 1.2 * width, 1.25 * width / count,
+        holes=[(*centre, radius) for centre in centres],
+        cracks=[((-0.625 * width, 0.0), (ratio * width + shift, 0.0)), *grown],
+        tip_size=tip_size,
+        hole_size=2 * radius / count,
+    )  # fmt: skip
+    return mesh, centres
+
+
 def _specimen_by_pins(
     material: str,
     degrees: Sequence[float],
@@ -319,16 +338,8 @@ def _specimen_by_pins(
     count: int,
 ) -> tuple[Mesh, NDArray[np.float64]]:
     """A mesh with `count` elements a side, and force, K_I, K_II for each turn of the material."""
-    shift, radius, offset = -0.375 * width, 0.125 * width, 0.275 * width
-    centres = ((shift, -offset), (shift, offset))
-    tip = (ratio * width + shift, 0.0)
-    mesh = rectangle(
-        1.25 * width, 1.2 * width, 1.25 * width / count,
-        holes=[(*centre, radius) for centre in centres],
-        cracks=[((-0.625 * width, 0.0), tip)],
-        tip_size=ratio * width / (100 * count),
-        hole_size=2 * radius / count,
-    )  # fmt: skip
+    mesh, centres = _specimen(width, ratio, count, ratio * width / (100 * count))
+    tip = (ratio * width - 0.375 * width, 0.0)
     rows = []
     for angle in degrees:
         voigt = turned_axes(1e9 * MATERIALS[material], -np.radians(angle))
@@ -386,5 +397,91 @@ def compact_tension_growth(
         {"ratio": np.array(ratios, dtype=float)} | dict(zip(names, fine.T, strict=True)),
         {"ratio": 0.0} | dict(zip(names, error.tolist(), strict=True)),
         tuple(meshes),
+        2,
+    )
+
+
+def compact_tension_paths(
+    material: str,
+    degrees: Sequence[float],
+    width: float,
+    ratio: float,
+    energies: Sequence[float],
+    exponent: int,
+    step: float,
+    steps: int,
+    elements: int,
+) -> Generated:
+    """Paths in the specimen of `compact_tension_by_pins` by `references.fem.energy_path`.
+
+    Parameters
+    ----------
+    energies : pair of float
+        Fracture energies of cuts across and along the fibres, J/m²; `exponent` is that of Eq. 93.
+
+    Returns
+    -------
+    Generated
+        ``path`` (degrees, steps + 1, 2), m from the crack's old tip, ``directions`` (degrees,
+        steps), rad, and ``release`` of the first, G over the fracture energy for a unit
+        displacement (1/m²). Errors: against half as many elements; the steps' length is not in
+        them.
+    """
+    found = []
+    # With the whole path, of each fineness and turn.
+    drawn: dict[tuple[int, float], Mesh] = {}
+    w1, w2 = two_lobe_constants(energies[0], energies[1], exponent, 1.0)
+    tip = (ratio * width - 0.375 * width, 0.0)
+
+    def critical(psi: NDArray[np.float64]) -> NDArray[np.float64]:
+        return w2 + (w1 - w2) * np.cos(psi) ** exponent
+
+    for count in (elements, elements // 2):
+        rows = []
+        for angle in np.radians(degrees):
+            voigt = turned_axes(1e9 * MATERIALS[material], -angle)
+
+            def release(  # type: ignore[no-untyped-def]
+                points: NDArray[np.float64], voigt=voigt, count=count, angle=angle
+            ) -> float:
+                ends = [(float(x), float(y)) for x, y in points]
+                mesh, centres = _specimen(width, ratio, count, step / count, list(pairwise(ends)))
+                drawn[count, float(angle)] = mesh
+                pulled = pulled_by_pins(mesh, voigt, centres, sliding=False)
+                last = points[-1] - points[-2]
+                way = float(np.arctan2(last[1], last[0]))
+                KI, KII = pulled.intensities(ends[-1], way, 0.6 * step)
+                return energy_release_rate(voigt, KI, KII, way)
+
+            def cost(way: float, angle=angle) -> float:  # type: ignore[no-untyped-def]
+                return float(effective_energy(critical, angle - way - np.pi / 2, 1.0)[0])
+
+            # Between straight ahead and beyond the fibres.
+            tried = [float(angle) * share for share in (0.5, 0.75, 1.0)]
+            rows.append(energy_path(tip, release, cost, step, steps, tried))
+        found.append(rows)
+    names = ("path", "directions", "release")
+    fine, coarse = (
+        dict(
+            zip(
+                names,
+                (
+                    np.stack([p.points - tip for p in rows]),
+                    np.stack([p.directions for p in rows]),
+                    np.stack([p.ratios[0] for p in rows]),
+                ),
+                strict=True,
+            )
+        )
+        for rows in found
+    )
+    # Quadratic elements: G and what follows from it converge with the square of their size.
+    errors = {
+        n: float(np.abs(fine[n] - coarse[n]).max() / np.abs(fine[n]).max()) / 3 for n in names
+    }
+    return Generated(
+        {"degrees": np.array(degrees, dtype=float)} | fine,
+        {"degrees": 0.0} | errors,
+        tuple(drawn.values()),
         2,
     )
