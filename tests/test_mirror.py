@@ -62,6 +62,7 @@ ELSEWHERE = {
     "cmverify/exchange/body_tables.py": "tests/cmverify/exchange/test_model.py",
     "cmverify/exchange/finite_elements.py": "tests/cmverify/exchange/test_comparison.py",
     "cmverify/exchange/solve_command.py": "tests/cmverify/exchange/test_scene_file.py",
+    "cmverify/exchange/shapes.py": "tests/cmverify/exchange/test_model.py",
     "cmverify/exchange/table.py": "tests/cmverify/exchange/test_model.py",
     "cmverify/exchange/request.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/exchange/refusal.py": "tests/cmverify/exchange/test_scene_file.py",

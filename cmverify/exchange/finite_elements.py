@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
+from cmverify.exchange import shapes
+
 if TYPE_CHECKING:
     from cmverify.exchange.request import Request
     from references.fem.general import GeneralSolution
@@ -88,7 +90,15 @@ def _value(value: Any, x: Array, y: Array, components: int) -> Array:
 def _where(condition: Any, x: Array, y: Array) -> Array:
     if condition is None:
         return np.ones(x.shape, dtype=bool)
+    if hasattr(condition, "contains"):
+        inside: Array = condition.contains(x.ravel(), y.ravel())
+        return inside.reshape(x.shape)
     return np.asarray(condition(x.ravel(), y.ravel()), dtype=bool).reshape(x.shape)
+
+
+def _place(request: Request, table: Any) -> Any:
+    """Where a support or a lead is."""
+    return shapes.place(table, request.source.path.parent, request.scene.spacing)
 
 
 def _held(request: Request, edge: Any) -> Callable[[Array, Any], Array]:
@@ -103,7 +113,7 @@ def _held(request: Request, edge: Any) -> Callable[[Array, Any], Array]:
                 depth = shapely.distance(edge, shapely.points(x, y))
                 chosen = depth <= table.layer_cells * spacing * (1 + 1e-9)
             else:
-                chosen = _where(table.where, x, y)
+                chosen = _where(_place(request, table), x, y)
             if table.kind == "edge":
                 chosen &= on_edge
             for name, value in table.values.items():
@@ -150,8 +160,11 @@ def _loads(request: Request, points: Array, triangles: Any) -> tuple[Any, ...]:
                 lambda x, y, t=table: _value(t.value, x, y, components) * _where(t.where, x, y)
             )
         elif table.kind == "lead":
-            area = _area(points, triangles, table.where)
-            volume.append(lambda x, y, t=table, a=area: t.value / a * _where(t.where, x, y)[None])
+            place = _place(request, table)
+            area = _area(points, triangles, place)
+            volume.append(
+                lambda x, y, t=table, a=area, p=place: t.value / a * _where(p, x, y)[None]
+            )
         elif table.kind == "stress":
             edges.append(lambda x, y, n1, n2, t=table: _pull(t, x, y, n1, n2))
         elif table.kind == "flux":

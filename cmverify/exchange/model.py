@@ -49,6 +49,9 @@ class Support(Table):
     )
     layer_cells: Positive | None = Field(default=None, description="Particles nearer to the edge")
     where: Condition | None = Field(default=None, description="Where this is true")
+    region: Region | None = Field(
+        default=None, description="Or within these shapes; bonds end at the rim of a lead so given"
+    )
     unknowns: list[Unknown] | None = Field(default=None, description="That are equal")
     centre: Point | None = Field(
         default=None, description="Of a pin, m; the mean of its particles by default"
@@ -68,12 +71,14 @@ class Support(Table):
 
     @model_validator(mode="after")
     def _complete(self) -> Support:
-        if self.kind == "particles":
-            if (self.layer_cells is None) == (self.where is None):
-                raise wrong("where", "needs either layer_cells or where")
-        elif self.layer_cells is not None:
+        places = [k for k in ("layer_cells", "where", "region") if getattr(self, k) is not None]
+        if self.kind != "particles" and self.layer_cells is not None:
             raise wrong("layer_cells", f"layer_cells says nothing of kind = {self.kind!r}")
-        elif self.where is None and self.kind != "edge":
+        if len(places) > 1:
+            raise wrong(places[1], f"give either {places[0]} or {places[1]}, not both")
+        if self.kind == "particles" and not places:
+            raise wrong("where", "needs either layer_cells, where or region")
+        if not places and self.kind != "edge":
             raise wrong("where", f"the key 'where' is missing: kind = {self.kind!r} needs it")
         for key, owner in (("unknowns", "equal"), ("centre", "pin")):
             if getattr(self, key) is not None and self.kind != owner:
@@ -142,7 +147,16 @@ class LeadCurrent(Table):
 
     kind: Literal["lead"]
     value: Number = Field(description="A per m of thickness")
-    where: Condition
+    where: Condition | None = Field(default=None, description="Cells where this is true")
+    region: Region | None = Field(
+        default=None, description="Or metal of these shapes, at whose rim bonds end"
+    )
+
+    @model_validator(mode="after")
+    def _placed(self) -> LeadCurrent:
+        if (self.where is None) == (self.region is None):
+            raise wrong("where", "a lead needs either where or region")
+        return self
 
 
 class PointLoad(Table):

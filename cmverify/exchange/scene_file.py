@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cmverify.exchange import beforehand, body_tables, budget, comparison, model
+from cmverify.exchange import beforehand, body_tables, budget, comparison, model, shapes
 from cmverify.exchange.model import SceneFile
 from cmverify.exchange.output import check_fields
 from cmverify.exchange.refusal import SceneFileError, Source
 from cmverify.exchange.request import Request, timed
 
 if TYPE_CHECKING:
-    from solver import Crack, Inclusion, Load, Region, Scene, Support
+    from solver import Crack, Inclusion, Load, Scene, Support
 
 __all__ = ["Request", "SceneFileError", "read", "request"]
 
@@ -169,23 +169,23 @@ def _scene(file: SceneFile, source: Source) -> Scene:
 
     options = dict(file.discretisation)
     law, exponent = options.pop("law"), options.pop("exponent")
+    folder, step = source.path.parent, file.discretisation.spacing
     with source.at("region"):
-        region = _region(file.region, source.path.parent, file.discretisation.spacing)
+        region = shapes.region(file.region, folder, step)
     with source.at("material"):
         material = _material(file.material)
     supports, loads, cracks, inclusions = [], [], [], []
     for i, inclusion in enumerate(file.inclusion):
         with source.at("inclusion", i):
-            folder, step = source.path.parent, file.discretisation.spacing
             inclusions.append(_inclusion(inclusion, material, folder, step))
             # Whether such a solid goes with the body's.
             Scene(region, options["spacing"], material, inclusions=inclusions[-1:], **_stores(file))
     for i, support in enumerate(file.support):
         with source.at("support", i):
-            supports.append(_support(support))
+            supports.append(_support(support, shapes.place(support, folder, step)))
     for i, load in enumerate(file.load):
         with source.at("load", i):
-            loads.append(_load(load))
+            loads.append(_load(load, shapes.place(load, folder, step)))
             # Whether such a load acts on such a body.
             Scene(region, options["spacing"], material, loads=loads)
     for i, crack in enumerate(file.crack):
@@ -226,43 +226,13 @@ def _law(name: str | None, exponent: int | None) -> Any:
     return laws[name]()
 
 
-def _region(shapes: Any, folder: Path, step: float) -> Region:
-    found: Region | None = None
-    for table in shapes:
-        shape = _shape(table, folder, step)
-        if found is None:
-            found = shape
-        elif table.operation == "subtract":
-            found = found - shape
-        else:
-            found = found | shape if table.operation == "add" else found & shape
-    assert found is not None
-    return found
-
-
-def _shape(table: Any, folder: Path, step: float) -> Region:
-    import solver
-
-    values = {k: v for k, v in table if k not in ("shape", "operation")}
-    if table.shape == "file":
-        from cmverify.exchange import outline_file
-
-        return outline_file.region(folder / values.pop("path"), chord=step, **values)
-    if "centre" in values:
-        values["centre"] = tuple(values["centre"])
-    if "angle_degrees" in values:
-        values["angle"] = np.radians(values.pop("angle_degrees"))
-    shape: Region = getattr(solver, table.shape)(**values)
-    return shape
-
-
 def _inclusion(table: body_tables.Inclusion, material: Any, folder: Path, step: float) -> Inclusion:
     from solver import ExpansionTensor, Inclusion
 
     own = material if table.material is None else _material(table.material)
     expansion = None if table.expansion is None else ExpansionTensor(table.expansion)
     return Inclusion(
-        _region(table.region, folder, step),
+        shapes.region(table.region, folder, step),
         own,
         thickness=table.thickness,
         expansion=expansion,
@@ -308,25 +278,24 @@ def _material(table: Any) -> Any:
     return material.rotated(np.radians(angle)) if angle else material
 
 
-def _support(table: model.Support) -> Support:
+def _support(table: model.Support, place: Any) -> Support:
     from solver import Support
 
     if table.layer_cells is not None:
         return Support.layer(cells=table.layer_cells, **table.values)
     if table.kind == "edge":
-        return Support.edge(table.where, **table.values)
-    assert table.where is not None
+        return Support.edge(place, **table.values)
     if table.kind == "pin":
         centre = None if table.centre is None else (table.centre[0], table.centre[1])
-        return Support.pin(table.where, centre, **table.values)
+        return Support.pin(place, centre, **table.values)
     if table.kind == "equal":
-        return Support.equal(table.where, *(table.unknowns or ()))
+        return Support.equal(place, *(table.unknowns or ()))
     if table.kind == "lead":
-        return Support.lead(table.where, **table.values)
-    return Support.where(table.where, **table.values)
+        return Support.lead(place, **table.values)
+    return Support.where(place, **table.values)
 
 
-def _load(table: Any) -> Load:
+def _load(table: Any, place: Any) -> Load:
     from solver import ExpansionTensor, Load
 
     if table.kind == "traction":
@@ -337,7 +306,7 @@ def _load(table: Any) -> Load:
         return Load.point(table.value, tuple(table.at))
     if table.kind == "temperature":
         return Load.temperature(table.value, ExpansionTensor(table.expansion))
-    load: Load = getattr(Load, table.kind)(table.value, where=table.where)
+    load: Load = getattr(Load, table.kind)(table.value, where=place)
     return load
 
 

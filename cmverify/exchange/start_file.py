@@ -77,7 +77,10 @@ shape = "rectangle"
 width = 2.0
 height = 1.0
 """
-_LEFT, _RIGHT = (f'"(abs(x {side} 0.65) < 0.3) * (abs(y) < 0.3)"' for side in "+-")
+_LEFT, _RIGHT = (
+    f'region = {{ shape = "rectangle", width = 0.6, height = 0.6, centre = [{x}, 0.0] }}\n'
+    for x in (-0.65, 0.65)
+)
 
 #: What a file is for, and the file without comments; analyses by their own names.
 KINDS: dict[str, tuple[str, str]] = {
@@ -90,9 +93,9 @@ KINDS: dict[str, tuple[str, str]] = {
         "Current between two leads",
         _CONDUCTING
         + '[material]\nkind = "electric"\nresistivities = [1.0, 2.0]\n'
-        + f'[[support]]\nkind = "lead"\nwhere = {_LEFT}\npotential = 0.0\n'
-        + f'[[support]]\nkind = "lead"\nwhere = {_RIGHT}\n'
-        + f'[[load]]\nkind = "lead"\nwhere = {_RIGHT}\nvalue = 1.0\n',
+        + f'[[support]]\nkind = "lead"\n{_LEFT}potential = 0.0\n'
+        + f'[[support]]\nkind = "lead"\n{_RIGHT}'
+        + f'[[load]]\nkind = "lead"\n{_RIGHT}value = 1.0\n',
     ),
     "inclusion": (
         "A plate with a hole and a stiff inclusion",

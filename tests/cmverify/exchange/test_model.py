@@ -103,6 +103,14 @@ PAIRS = {
         [solver.Support.where(left, potential=0.0), solver.Support.lead(right)],
         [solver.Load.lead(2.0, right), solver.Load.point(0.5, (0.0, 0.5))],
     ),
+    "lead of a shape": (
+        METAL + '[[support]]\nregion = { shape = "rectangle", width = 0.4, height = 2.0, '
+        "centre = [-0.5, 0.0] }\npotential = 0\n"
+        '[[support]]\nkind = "lead"\nregion = { shape = "disc", radius = 0.2 }\n'
+        '[[load]]\nkind = "lead"\nregion = { shape = "disc", radius = 0.2 }\nvalue = 2.0\n',
+        [solver.Support.where(left, potential=0.0), solver.Support.lead(solver.disc(0.2))],
+        [solver.Load.lead(2.0, solver.disc(0.2))],
+    ),
 }  # fmt: skip
 
 
@@ -158,6 +166,8 @@ def test_a_rectangle_is_turned_about_its_centre(tmp_path):
     [
         ('kind = "pin"\nlayer_cells = 2\n', "layer_cells says nothing of"),
         ('kind = "pin"\n', "'where' is missing"),
+        ('where = "x > 0"\nregion = { shape = "disc", radius = 1 }\nu1 = 0\n', "not both"),
+        ('region = { shape = "disk", radius = 1 }\nu1 = 0\n', "disc"),
         ('kind = "edge"\n', "prescribes nothing"),
         ('kind = "equal"\nwhere = "x > 0"\n', "say which unknowns"),
         ('kind = "equal"\nwhere = "x > 0"\nunknowns = ["u3"]\n', "u3.* is not one of u1"),
