@@ -151,7 +151,8 @@ def compare(request: Request, result: Any) -> Comparison:
         raise request.source.error(place, f"finite elements refuse it: {error}") from error
     points = result.points
     whole: Any = result.whole if isinstance(result, Selected) else result
-    free = ~np.asarray(whole.prescribed)
+    # Layers whose rotations are left free are held all the same.
+    free = ~np.asarray(whole.discretisation.held)
     elastic = len(scene.physics.unknowns) > 1
     ours = result.everything if isinstance(result, Selected) else result.fields()
     unknown = next(name for name in scene.physics.fields if name in ours)

@@ -13,7 +13,7 @@ from cmverify.exchange import shapes
 
 if TYPE_CHECKING:
     from cmverify.exchange.request import Request
-    from references.fem.general import GeneralSolution
+    from references.fem.general import Acting, GeneralSolution
     from solver.arrays import Array
 
 
@@ -25,7 +25,7 @@ def solved(request: Request, size: float) -> GeneralSolution:
     ValueError, FloatingPointError, RuntimeError
         If there is no such mesh, or the equations have no solution.
     """
-    from references.fem.general import Acting, solve
+    from references.fem.general import solve
     from references.fem.polygons import polygons
 
     scene = request.scene
@@ -52,7 +52,7 @@ def solved(request: Request, size: float) -> GeneralSolution:
         np.stack([getattr(material, name) for material in materials]),
         solid,
         _held(request, shapely.boundary(body)),
-        Acting(*_loads(request, mesh.points, mesh.triangles)),
+        _acting(request),
         _thickness(request),
     )
 
@@ -101,6 +101,14 @@ def _place(request: Request, table: Any) -> Any:
     return shapes.place(table, request.source.path.parent, request.scene.spacing)
 
 
+def _acts(number: int, condition: Any, x: Array, y: Array) -> Array:
+    """Where a load acts; what no point of the mesh feels is another scene."""
+    found = _where(condition, x, y)
+    if not found.any():
+        raise ValueError(f"load #{number} acts where the mesh has no point: it is too small for it")
+    return found
+
+
 def _held(request: Request, edge: Any) -> Callable[[Array, Any], Array]:
     physics, spacing = request.scene.physics, request.scene.spacing
     components = 2 if len(physics.unknowns) > 1 else 1
@@ -108,7 +116,7 @@ def _held(request: Request, edge: Any) -> Callable[[Array, Any], Array]:
     def held(nodes: Array, on_edge: Any) -> Array:
         values = np.full((len(nodes), components), np.nan)
         x, y = nodes.T
-        for table in request.file.support:
+        for number, table in enumerate(request.file.support, start=1):
             if table.layer_cells is not None:
                 depth = shapely.distance(edge, shapely.points(x, y))
                 chosen = depth <= table.layer_cells * spacing * (1 + 1e-9)
@@ -116,6 +124,8 @@ def _held(request: Request, edge: Any) -> Callable[[Array, Any], Array]:
                 chosen = _where(_place(request, table), x, y)
             if table.kind == "edge":
                 chosen &= on_edge
+            if not chosen.any():
+                raise ValueError(f"support #{number} holds no node: it is too small for the mesh")
             for name, value in table.values.items():
                 if name == "rotation":
                     continue
@@ -145,37 +155,44 @@ def _thickness(request: Request) -> Callable[..., Array] | None:
     return thickness
 
 
-def _loads(request: Request, points: Array, triangles: Any) -> tuple[Any, ...]:
-    """What acts: per volume, on edges, at points, and strains without stress."""
+def _acting(request: Request) -> Acting:
+    """What acts, and strains without stress."""
+    from references.fem.general import Acting
+
     scene = request.scene
     components = 2 if len(scene.physics.unknowns) > 1 else 1
     tolerance = 1e-6 * scene.spacing
     volume: list[Any] = []
+    spread: list[Any] = []
     edges: list[Any] = []
     places: list[Any] = []
     strains: list[Any] = []
-    for table, load in zip(request.file.load, scene.loads, strict=True):
+    given = zip(request.file.load, scene.loads, strict=True)
+    for n, (table, load) in enumerate(given, start=1):
         if table.kind in ("body_force", "source", "current"):
             volume.append(
-                lambda x, y, t=table: _value(t.value, x, y, components) * _where(t.where, x, y)
+                lambda x, y, t=table, n=n: (
+                    _value(t.value, x, y, components) * _acts(n, t.where, x, y)
+                )
             )
         elif table.kind == "lead":
             place = _place(request, table)
-            area = _area(points, triangles, place)
-            volume.append(
-                lambda x, y, t=table, a=area, p=place: t.value / a * _where(p, x, y)[None]
-            )
+            spread.append((lambda x, y, p=place, n=n: _acts(n, p, x, y), table.value))
         elif table.kind == "stress":
-            edges.append(lambda x, y, n1, n2, t=table: _pull(t, x, y, n1, n2))
+            edges.append(lambda x, y, n1, n2, t=table, n=n: _pull(n, t, x, y, n1, n2))
         elif table.kind == "flux":
             edges.append(
-                lambda x, y, n1, n2, t=table: (
-                    -(_value(t.value, x, y, 2) * (n1, n2)).sum(axis=0)[None] * _where(t.where, x, y)
+                lambda x, y, n1, n2, t=table, n=n: (
+                    -(_value(t.value, x, y, 2) * (n1, n2)).sum(axis=0)[None]
+                    * _acts(n, t.where, x, y)
                 )
             )
         elif table.kind == "traction":
             edges.append(
-                lambda x, y, n1, n2, t=table: _value(t.value, x, y, 2) * _along(t, x, y, tolerance)
+                lambda x, y, n1, n2, t=table, n=n: (
+                    _value(t.value, x, y, 2)
+                    * _acts(n, lambda x, y, t=t: _along(t, x, y, tolerance), x, y)
+                )
             )
         elif table.kind in ("point", "line"):
             assert load.points is not None
@@ -198,7 +215,7 @@ def _loads(request: Request, points: Array, triangles: Any) -> tuple[Any, ...]:
             total += np.moveaxis(np.stack(voigts)[solid], -1, 0) * change
         return total
 
-    return volume, edges, places, strain if strains else None
+    return Acting(volume, spread, edges, places, strain if strains else None)
 
 
 def _thick_at(request: Request, at: Array) -> Array:
@@ -211,9 +228,9 @@ def _thick_at(request: Request, at: Array) -> Array:
     return function(*at.T, solid)[:, None]
 
 
-def _pull(table: Any, x: Array, y: Array, n1: Array, n2: Array) -> Array:
+def _pull(number: int, table: Any, x: Array, y: Array, n1: Array, n2: Array) -> Array:
     s11, s22, s12 = _value(table.value, x, y, 3)
-    return np.stack([s11 * n1 + s12 * n2, s12 * n1 + s22 * n2]) * _where(table.where, x, y)
+    return np.stack([s11 * n1 + s12 * n2, s12 * n1 + s22 * n2]) * _acts(number, table.where, x, y)
 
 
 def _along(table: Any, x: Array, y: Array, tolerance: float) -> Array:
@@ -224,17 +241,3 @@ def _along(table: Any, x: Array, y: Array, tolerance: float) -> Array:
     across = ((x - start[0]) * (end - start)[1] - (y - start[1]) * (end - start)[0]) / length
     on = (np.abs(across) <= tolerance) & (along >= -tolerance) & (along <= length + tolerance)
     return np.asarray(on)
-
-
-def _area(points: Array, triangles: Any, where: Any) -> float:
-    """Area of the part of a mesh in which a condition is true, by many points a triangle."""
-    corners = points[triangles]
-    a, b, c = (corners[:, k] for k in range(3))
-    twice = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
-    total, count = 0.0, 12
-    grid = [(i, j) for i in range(count) for j in range(count - i)]
-    for i, j in grid:
-        u, v = (i + 1 / 3) / count, (j + 1 / 3) / count
-        x, y = (a + u * (b - a) + v * (c - a)).T
-        total += float((twice * _where(where, x, y)).sum())
-    return 0.5 * total / len(grid)

@@ -39,6 +39,9 @@ class Acting:
     ----------
     volume : sequence of Density
         Per volume.
+    spread : sequence of ((x, y) → bool, amount)
+        What enters in all, per thickness, evenly where a condition is true: as much whatever the
+        mesh makes of the condition's rim.
     edge : sequence of OnEdge
         Per area of the boundary ``edge``, of outward normal n.
     points : sequence of (places (k, 2), what acts at each (k, components))
@@ -48,6 +51,7 @@ class Acting:
     """
 
     volume: Sequence[Density] = ()
+    spread: Sequence[tuple[Callable[[Array, Array], NDArray[np.bool_]], float]] = ()
     edge: Sequence[OnEdge] = ()
     points: Sequence[tuple[Array, Array]] = ()
     strain: Callable[[Array, Array, NDArray[np.int64]], ArrayLike] | None = None
@@ -117,7 +121,8 @@ def solve(
     Raises
     ------
     ValueError
-        If supports leave a part of the body a rigid motion, or a temperature that nothing sets.
+        If supports leave a part of the body a rigid motion, or a temperature that nothing sets, or
+        the mesh has no point where something is spread.
     FloatingPointError
         If the equations cannot be solved to nine digits.
     """
@@ -140,8 +145,15 @@ def solve(
         lambda u, v, w: np.einsum("ij...,j...,i...->...", moduli, _strain(u), _strain(v))
     ).assemble(basis)
     load = np.zeros(basis.N)
-    for density in acting.volume:
-        force = _shaped(density(x, y), elastic, x) * thick(x, y, which)
+    densities = [density(x, y) for density in acting.volume]
+    for where, amount in acting.spread:
+        inside = where(x, y)
+        area = float((inside * basis.dx).sum())
+        if not area > 0:
+            raise ValueError("no point of the mesh lies where something is spread")
+        densities.append(amount / area * inside[None])
+    for density in densities:
+        force = _shaped(density, elastic, x) * thick(x, y, which)
         load += skfem.LinearForm(lambda v, w, f=force: _dot(f, v)).assemble(basis)
     if acting.strain is not None:
         free = _shaped(acting.strain(x, y, which), True, x, 3)

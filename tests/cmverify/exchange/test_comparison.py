@@ -196,6 +196,33 @@ def test_a_body_that_is_another_one_is_seen(tmp_path, old, new):
     assert found.differences[0].l2 > 3 * MEASURED["stress"][0]
 
 
+HEAVY = '[[load]]\nkind = "body_force"\nvalue = [1.0, 0.0]\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[[support]]\nu1 = 0.0\n", r"support #2 holds no node"),
+        (HEAVY, r"load #1 acts where the mesh has no point"),
+    ],
+)
+def test_what_the_mesh_is_too_coarse_for_is_refused(tmp_path, text, message):
+    """One particle is held, or pushed, and no node: finite elements would do without."""
+    single = 'where = "hypot(x - 0.75, y + 0.25) < 1e-3"\n'
+    with pytest.raises(SceneFileError, match=message):
+        compared(tmp_path, BODY.replace("0.08", "0.1") + SOLID + HELD + text + single)
+
+
+def test_particles_of_a_layer_are_held_whatever_their_rotation(tmp_path):
+    """What is compared are free particles: nothing of a layer whose rotations are left free."""
+    layer = "[[support]]\nlayer_cells = 3.1\n"
+    bent = 'displacement = ["0.1 * x * y", "0"]\n'
+    found = compared(tmp_path, BODY.split('[[region]]\nshape = "disc')[0] + SOLID + layer + bent)
+    for one in found.differences:
+        depth = min(1.0 - abs(one.at[0]), 0.5 - abs(one.at[1]))
+        assert depth > 3.1 * 0.08, one
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

@@ -125,3 +125,29 @@ def test_what_nothing_holds_is_refused():
             solve(
                 mesh, tensor[None], one, lambda n, e, c=size: np.full((len(n), c), np.nan), Acting()
             )
+
+
+@pytest.mark.parametrize("size", [0.4, 0.2])
+def test_what_is_spread_enters_whole_whatever_the_mesh_makes_of_its_rim(size):
+    """A current into a disc of an element's size leaves through the left edge, all of it."""
+    mesh = polygons([(SQUARE, [])], size)
+    one = np.zeros(len(mesh.triangles), dtype=np.int64)
+
+    def held(nodes, edge):
+        return np.where(edge & (nodes[:, 0] < 1e-9), 0.0, np.nan)[:, None]
+
+    def spread(radius):
+        where = lambda x, y: np.hypot(x - 0.7, y - 0.5) < radius  # noqa: E731
+        return solve(mesh, np.eye(2)[None], one, held, Acting(spread=[(where, 3.0)]))
+
+    # φ = x is tested by any field: its work is that of what leaves, ∫ j·∇x = amount × mean x.
+    found = spread(0.15)
+    corners = mesh.points[mesh.triangles]
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    area = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    middles = [(corners[:, i] + corners[:, (i + 1) % 3]) / 2 for i in range(3)]
+    # Linear in each triangle: its middles integrate it exactly.
+    inward = sum(found.flux_at(0.999999 * p + 1e-6 * corners.mean(axis=1))[:, 0] for p in middles)
+    assert (inward / 3 * area).sum() == pytest.approx(-3.0 * 0.7, rel=0.06)
+    with pytest.raises(ValueError, match="no point of the mesh"):
+        spread(1e-6)
