@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import redirect_stderr, redirect_stdout
 from functools import reduce
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,6 +26,10 @@ if TYPE_CHECKING:
 
 #: Ends of curves nearer than this share of the drawing's size are one.
 _JOINED = 1e-7
+# Nodes on the outline of a cell: its corners, then the middles of its sides.
+_NODES = {"triangle": 3, "triangle6": 6, "triangle7": 6, "quad": 4, "quad8": 8, "quad9": 8}
+# Chords of a curved side, and how far from straight one may be, in its length.
+_CHORDS, _STRAIGHT = 16, 1e-9
 # What a gmsh script may do beside drawing: run programs, read and write files.
 _FORBIDDEN = (
     "SystemCall", "NonBlockingSystemCall", "OnelabRun", "OnelabExecute", "Include", "Merge",
@@ -93,7 +98,7 @@ Cells = tuple["NDArray[np.float64]", list["NDArray[np.int64]"]]
 
 
 def _meshed(path: Path, part: str | None, chord: float) -> Cells:
-    """Points (n, 3) and blocks of plane cells, corners (k, 3 or 4), of a file."""
+    """Points (n, 3) and blocks of plane cells of a file, see `_shapes`."""
     if path.suffix.lower() == ".geo":
         return _geo(path, part, chord)
     import meshio
@@ -110,11 +115,18 @@ def _meshed(path: Path, part: str | None, chord: float) -> Cells:
     chosen = _group(mesh, part, path.name)
     blocks = []
     for number, block in enumerate(mesh.cells):
-        for name, corners in (("triangle", 3), ("quad", 4)):
-            if block.type.rstrip("0123456789") == name and len(block.data):
-                data = np.asarray(block.data, dtype=np.int64)[:, :corners]
-                blocks.append(data if chosen is None else data[chosen[number]])
-    return np.asarray(mesh.points, dtype=np.float64), blocks
+        if block.type.rstrip("0123456789") in ("triangle", "quad") and len(block.data):
+            if block.type not in _NODES:
+                raise ValueError(
+                    f"{path.name} has cells of higher order ({block.type}): write its mesh with "
+                    f"cells of first or second order"
+                )
+            data = np.asarray(block.data, dtype=np.int64)[:, : _NODES[block.type]]
+            blocks.append(data if chosen is None else data[chosen[number]])
+    points = np.asarray(mesh.points, dtype=np.float64)
+    if not all(np.isfinite(points[block]).all() for block in blocks):
+        raise ValueError(f"{path.name} has a point that is not finite")
+    return points, blocks
 
 
 def _group(mesh: Any, part: str | None, name: str) -> list[NDArray[np.bool_]] | None:
@@ -131,14 +143,20 @@ def _group(mesh: Any, part: str | None, name: str) -> list[NDArray[np.bool_]] | 
 def _geo(path: Path, part: str | None, chord: float) -> Cells:
     from references.fem.gmsh_session import MeshingUnavailableError, session
 
-    text = re.sub(r"//[^\n]*|/\*.*?\*/", " ", path.read_text("utf-8", "replace"), flags=re.DOTALL)
+    script = path.read_bytes()
+    text = re.sub(r"//[^\n]*|/\*.*?\*/", " ", script.decode("utf-8", "replace"), flags=re.DOTALL)
     for word in _FORBIDDEN:
         if re.search(rf"\b{word}\b", text):
             raise ValueError(f"{path.name} uses {word}: no script is run that does more than draw")
     options = {"Mesh.MeshSizeMax": chord, "Mesh.RandomSeed": 1, "General.AbortOnError": 2}
     try:
-        with session(options) as gmsh:
-            gmsh.merge(str(path))
+        with TemporaryDirectory() as folder, session(options) as gmsh:
+            # Of a last line without an end gmsh reads the first statement alone.
+            ended = Path(folder, path.name)
+            ended.write_bytes(script + b"\n")
+            gmsh.merge(str(ended))
+            gmsh.model.mesh.generate(1)
+            _require_simple(gmsh, path.name)
             gmsh.model.mesh.generate(2)
             groups = {
                 gmsh.model.getPhysicalName(dim, tag): (dim, tag)
@@ -172,6 +190,28 @@ def _geo(path: Path, part: str | None, chord: float) -> Cells:
         raise ValueError(f"gmsh does not mesh {path.name}: {error}") from error
 
 
+def _require_simple(gmsh: Any, name: str) -> None:
+    """Refuse surfaces whose curves, meshed, cross: gmsh would look for triangles without end."""
+    tags, flat, _ = gmsh.model.mesh.getNodes()
+    place = dict(
+        zip(np.asarray(tags).tolist(), np.asarray(flat).reshape(-1, 3)[:, :2], strict=True)
+    )
+    for surface in gmsh.model.getEntities(2):
+        curves = {abs(tag) for _, tag in gmsh.model.getBoundary([surface], oriented=False)}
+        ends = [
+            place[node]
+            for curve in sorted(curves)
+            for node in gmsh.model.mesh.getElementsByType(1, curve)[1].tolist()
+        ]
+        lines = shapely.linestrings(np.reshape(ends, (-1, 2, 2)))
+        one, other = shapely.STRtree(lines).query(lines, predicate="crosses")
+        if len(one):
+            x, y = shapely.get_coordinates(lines[one[0]].intersection(lines[other[0]]))[0]
+            raise ValueError(
+                f"{name}: the outline of surface {surface[1]} crosses itself at ({x:g}, {y:g})"
+            )
+
+
 def _covered(cells: Cells, scale: float) -> shapely.Geometry:
     """What plane cells cover."""
     points, blocks = cells
@@ -180,8 +220,37 @@ def _covered(cells: Cells, scale: float) -> shapely.Geometry:
     used = points[np.unique(np.concatenate([block.ravel() for block in blocks]))]
     if points.shape[1] > 2 and np.ptp(used[:, 2]) > 1e-9 * np.ptp(used[:, :2], axis=0).max():
         raise ValueError("the file's cells do not lie in a plane z = constant")
-    faces = [shapely.polygons(scale * points[block][:, :, :2]) for block in blocks]
-    return shapely.coverage_union_all(np.concatenate(faces))
+    faces = [face for block in blocks for face in _shapes(scale * points[block][:, :, :2])]
+    return shapely.coverage_union_all(faces)
+
+
+def _shapes(nodes: NDArray[np.float64]) -> list[shapely.Geometry]:
+    """Polygons of cells (k, 3, 4, 6 or 8, 2): corners in turn, then middles of sides, if any."""
+    if nodes.shape[1] < 6:
+        return list(shapely.polygons(nodes))
+    corners, middles = np.split(nodes, 2, axis=1)
+    ends = np.roll(corners, -1, axis=1)
+    off = np.linalg.norm(middles - 0.5 * (corners + ends), axis=2)
+    bent = off > _STRAIGHT * np.linalg.norm(ends - corners, axis=2)
+    found = list(shapely.polygons(corners[~bent.any(axis=1)]))
+    for k in np.flatnonzero(bent.any(axis=1)):
+        sides = [
+            _side(*side) if curved else side[0][None]
+            for side, curved in zip(
+                zip(corners[k], middles[k], ends[k], strict=True), bent[k], strict=True
+            )
+        ]
+        found.append(shapely.Polygon(np.concatenate(sides)))
+    return found
+
+
+def _side(start: Any, middle: Any, end: Any) -> NDArray[np.float64]:
+    """Points of a quadratic side but its last one; those of its neighbour are the same bits."""
+    swapped = tuple(start) > tuple(end)
+    a, b = (end, start) if swapped else (start, end)
+    s = (np.arange(_CHORDS + 1) / _CHORDS)[:, None]
+    points = a * (1 - s) * (1 - 2 * s) + middle * (4 * s * (1 - s)) + b * (s * (2 * s - 1))
+    return points[:0:-1] if swapped else points[:-1]
 
 
 # ---- drawings ---------------------------------------------------------------------------

@@ -110,6 +110,70 @@ def test_a_script_that_does_more_than_draw_is_not_run(tmp_path, word):
     assert not trace.exists()
 
 
+@pytest.mark.parametrize("dropped", [0, 1])
+def test_a_script_without_a_last_end_of_line_is_read_whole(tmp_path, dropped):
+    """gmsh drops what follows the first statement of such a line: here the hole."""
+    lines = (
+        'SetFactory("OpenCASCADE");\nRectangle(1) = {0, 0, 0, 2, 1};\n'
+        "Disk(2) = {1, 0.5, 0, 0.25}; BooleanDifference{Surface{1}; Delete;}{Surface{2}; Delete;}\n"
+    )
+    (tmp_path / "body.geo").write_text(lines[: len(lines) - dropped], encoding="utf-8")
+    found = outline_file.region(tmp_path / "body.geo", chord=0.02)
+    assert area(found) == pytest.approx(2 - np.pi / 16, rel=1e-3)
+
+
+def test_a_script_whose_outline_crosses_itself_is_refused_at_once(tmp_path):
+    bow = GEO.replace("{1, 1, 0, lc}", "").replace(
+        "Point(3) = {2, 1, 0, lc}; Point(4) = {0, 1, 0, lc};",
+        "Point(4) = {2, 1, 0, lc}; Point(3) = {0, 1, 0, lc};",
+    )
+    bow = bow.replace(
+        "Plane Surface(1) = {1, 2}; Plane Surface(2) = {2};", "Plane Surface(1) = {1};"
+    )
+    (tmp_path / "body.geo").write_text(bow.split("Physical")[0], encoding="utf-8")
+    with pytest.raises(ValueError, match=r"surface 1 crosses itself at \(1, 0\.5\)"):
+        outline_file.region(tmp_path / "body.geo", chord=0.3)
+
+
+@pytest.mark.parametrize("sides", [3, 4])
+def test_sides_of_second_order_are_curved(tmp_path, sides):
+    """A quarter of a ring, a cell each 15°, middles on the circles; corners alone lose 1 %."""
+    steps = np.deg2rad(np.linspace(0, 90, 13))
+
+    def at(radius, number):
+        return (radius * np.cos(steps[number]), radius * np.sin(steps[number]), 0.0)
+
+    points, cells = [], []
+    for k in range(0, 12, 2):
+        if sides == 4:
+            own = [at(1, k), at(2, k), at(2, k + 2), at(1, k + 2)]
+            own += [at(1.5, k), at(2, k + 1), at(1.5, k + 2), at(1, k + 1)]
+        else:
+            own = [(0, 0, 0), at(2, k), at(2, k + 2), at(1, k), at(2, k + 1), at(1, k + 2)]
+        cells.append(len(points) + np.arange(len(own)))
+        points += own
+    kind = "quad8" if sides == 4 else "triangle6"
+    meshio.write_points_cells(tmp_path / "ring.vtu", np.array(points), [(kind, np.array(cells))])
+    exact = np.pi * (0.75 if sides == 4 else 1.0)
+    found = outline_file.region(tmp_path / "ring.vtu")
+    assert area(found) == pytest.approx(exact, rel=1e-4)
+    assert len(shapely.get_parts(found.outline(1.0))) == 1
+
+
+def test_cells_of_third_order_and_points_that_are_none_are_refused(tmp_path):
+    points, cells = gridded()
+    cubic = np.random.default_rng(0).random((10, 3)) * [1, 1, 0]
+    meshio.write_points_cells(
+        tmp_path / "body.msh", cubic, [("triangle10", np.arange(10)[None])], file_format="gmsh22"
+    )
+    with pytest.raises(ValueError, match="higher order"):
+        outline_file.region(tmp_path / "body.msh")
+    points[0, 0] = np.nan
+    meshio.write_points_cells(tmp_path / "body.vtu", points, [("quad", cells)])
+    with pytest.raises(ValueError, match="not finite"):
+        outline_file.region(tmp_path / "body.vtu")
+
+
 def test_what_is_no_mesh_is_refused(tmp_path):
     path = tmp_path / "body.msh"
     with pytest.raises(ValueError, match="there is no file"):
