@@ -129,11 +129,12 @@ def _moved(wrong: Mapping[int, Outcome], right: Mapping[int, Outcome]) -> bool:
 
 
 def _alone(case: Case, method: str) -> Case:
-    """A case with one of its methods and the checks of it."""
+    """A case with one of its methods, and what is said of it."""
     return replace(
         case,
         methods=(case.method(method),),
         checks=tuple(c for c in case.checks if c.method == method),
+        poses=tuple(p for p in case.poses if p.method == method),
         featured=method,
     )
 

@@ -155,3 +155,10 @@ def test_the_reported_figures_of_new_cases_are_checked():
             measured = method.run(n).quantities
             assert {(method.name, q) for q in measured} <= judged
             assert np.isfinite(list(measured.values())).all()
+
+
+def test_every_method_can_be_tried_alone():
+    for name, method in trial.pairs():
+        alone = trial._alone(cases.get(name), method)
+        assert [m.name for m in alone.methods] == [method]
+        assert {c.method for c in alone.checks} | {p.method for p in alone.poses} <= {method}
