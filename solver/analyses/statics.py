@@ -86,13 +86,16 @@ def solve(
     if tolerance < residual <= method.attainable(operator, x, rhs):
         stopped = (
             f"the residual stopped at {residual:.1e}, where {tolerance:.1e} was asked for: in a "
-            f"body so slender (or so loosely held) rounding of the displacements allows no less"
+            f"body so slender, so loosely held or of solids so different rounding of the "
+            f"displacements (or temperatures) allows no less"
         )
         warnings += cautions.told((stopped,))
     elif not residual <= tolerance:
+        rounded = residual <= method.rounded(operator, x, rhs)
+        why = ": its parts differ by too much for numbers of 16 digits" if rounded else ""
         raise ConvergenceError(
             f"{used} stopped at a relative residual of {residual:.2e} after {iterations} "
-            f"iterations; {tolerance:.1e} was asked for"
+            f"iterations; {tolerance:.1e} was asked for{why}"
         )
     statistics = Statistics(
         particles=discretisation.lattice.count,

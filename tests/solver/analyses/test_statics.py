@@ -16,6 +16,7 @@ from solver import (
     ElasticTensor,
     Family,
     InadmissibleMaterialError,
+    Inclusion,
     Load,
     NegativeCurvatureError,
     Scene,
@@ -479,3 +480,23 @@ def test_a_slender_body_stops_at_what_rounding_allows_and_says_so(surface):
     # Where rounding is no excuse it is an error still.
     with pytest.raises(ConvergenceError, match="stopped at a relative residual"):
         scene.solve(max_iterations=30)
+
+
+@pytest.mark.parametrize(("contrast", "answered"), [(1e8, True), (1e14, False)])
+def test_solids_that_differ_by_too_much_for_rounding_are_refused(contrast, answered):
+    """1e14: a residual of 0.4, which rounding explains, and temperatures wrong by 90 %."""
+    inner = Inclusion(rectangle(6.0, 6.0), ConductivityTensor.isotropic(contrast))
+    scene = Scene(
+        rectangle(20, 14),
+        1.0,
+        ConductivityTensor.isotropic(1.0),
+        [Support.where(lambda x, y: x < -7, temperature=0.0)],
+        [Load.source(lambda x, y: 1 + 1e-2 * x * y)],
+        m=3,
+        inclusions=[inner],
+    )
+    if answered:
+        assert any("solids so different" in said for said in scene.solve().statistics.warnings)
+        return
+    with pytest.raises(ConvergenceError, match="differ by too much for numbers of 16 digits"):
+        scene.solve()
