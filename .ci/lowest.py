@@ -11,9 +11,20 @@ from pathlib import Path
 project = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text("utf-8"))[
     "project"
 ]
+
+
+def extra(name: str) -> list[str]:
+    """Requirements of an extra, those of the extras that it names itself among them."""
+    found = []
+    for requirement in project["optional-dependencies"][name]:
+        inner = re.fullmatch(r"cmverify\[([\w-]+)\]", requirement)
+        found += extra(inner[1]) if inner else [requirement]
+    return found
+
+
 declared = list(project["dependencies"])
-for extra in sys.argv[1:]:
-    declared += project["optional-dependencies"][extra]
+for asked in sys.argv[1:]:
+    declared += extra(asked)
 for requirement in declared:
     found = re.fullmatch(r"([\w.-]+)>=([\d.]+)", requirement)
     if not found:
