@@ -260,6 +260,7 @@ class Discretisation:
                 *cautions.left_over(lattice, scene.surface),
                 *cautions.on_edges(self.bonds),
                 *cautions.missing_bonds(self.bonds, self.held, self.damaged),
+                *cautions.chiral_edges(self.bonds, self.moduli, self.held),
                 *cautions.thin_layers(lattice, given, scene.m),
                 *cautions.thin_members(lattice, scene.m, scene.surface),
                 *leads.cautions(scene, lattice),

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from solver import (
+    ChiralTensor,
     ConductivityTensor,
     Crack,
     ElasticTensor,
@@ -235,3 +236,18 @@ def test_a_row_of_particles_on_an_edge_is_told_of(phase, told):
     """Bonds that end where they begin are counted as a tenth of a cell long."""
     found = warnings(phase=phase, surface="extrapolated")
     assert any("lie on an edge of the body" in said for said in found) == told
+
+
+@pytest.mark.parametrize("surface", ["none", "volume", "extrapolated"])
+def test_edges_of_chiral_solids_whose_bonds_give_energy_away(surface):
+    def said(turn):
+        solid = ChiralTensor(ElasticTensor.orthotropic(2.0, 1.0, 0.6, 0.2), turn)
+        body = Scene(rectangle(1.6, 1.0), 0.1, solid, [HELD], [PULL], surface=surface, m=3)
+        found = body.discretise()
+        return cautions.chiral_edges(found.bonds, found.moduli, found.held), found.moduli
+
+    for turn in ([0.3, -0.2, 0.15], [0.01, 0.01, 0.0]):
+        sentences, moduli = said(turn)
+        wanted = surface != "extrapolated" and not moduli.non_negative
+        assert bool(sentences) == wanted
+    assert not said([0.3, -0.2, 0.15])[1].non_negative
