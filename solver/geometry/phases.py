@@ -185,7 +185,9 @@ def _fitted(shapes: list[shapely.Geometry], same: float) -> list[shapely.Geometr
             shape = shapely.snap(shape, other, same)
         inclusions[k] = shape
         body = shapely.snap(body, shape, same)
-    found = [body, *(shapely.intersection(shape, body) for shape in inclusions)]
+    # Older GEOS leave flags of floating-point errors behind that mean nothing.
+    with np.errstate(invalid="ignore"):
+        found = [body, *(shapely.intersection(shape, body) for shape in inclusions)]
     for k in range(len(found)):
         for later in inclusions[k:]:
             found[k] = shapely.difference(found[k], later)

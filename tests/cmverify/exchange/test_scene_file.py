@@ -80,7 +80,7 @@ def test_examples_run(tmp_path, name):
         ('"x**2 - 5*y**2"', '"x**2 - 5*z**2"', 15, "unknown name 'z'"),
         ('"x**2 - 5*y**2"', '"x**2 -"', 15, "not a formula"),
         ("layer_cells = 3.5", "layer_cels = 3.5", 14, "did you mean 'layer_cells'"),
-        ("layer_cells = 3.5\n", "", 13, "either layer_cells or where"),
+        ("layer_cells = 3.5\n", "", 13, "either layer_cells, where or region"),
         ("tensor = [[5, 2], [2, 1]]", "", 9, "needs either tensor or principal"),
         ("m = 3", 'law = "cosin"', 3, "is not one of cosine"),
         ("m = 3", "exponent = 4", 3, 'law = "cosine"'),

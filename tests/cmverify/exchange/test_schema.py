@@ -4,6 +4,7 @@ import json
 import re
 from pathlib import Path
 
+import pydantic
 import pytest
 from typer.testing import CliRunner
 
@@ -16,6 +17,10 @@ from solver.analyses import analyses
 DOCS = Path(__file__).parents[3] / "docs"
 
 
+@pytest.mark.skipif(
+    tuple(map(int, pydantic.VERSION.split(".")[:2])) < (2, 10),
+    reason="older pydantic says the same schema in other words",
+)
 def test_docs_are_current():
     """Else: cmverify schema --folder docs."""
     assert (DOCS / "scene.schema.json").read_text(encoding="utf-8") == schema.as_text()
