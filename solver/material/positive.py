@@ -12,14 +12,33 @@ import numpy as np
 from scipy.optimize import nnls
 
 from ..arrays import Array
+from ..errors import CalibrationError
 
 _FEASIBLE = 1e-9
+
+
+def _least_squares(matrix: Array, target: Array) -> tuple[Array, float]:
+    """x ≥ 0 nearest to ``matrix @ x == target``, and what is left.
+
+    Raises
+    ------
+    CalibrationError
+        If the search does not end, as with tensors whose entries are many orders apart.
+    """
+    try:
+        found, residual = nnls(matrix, target, maxiter=50 * matrix.shape[1])
+    except RuntimeError as error:
+        raise CalibrationError(
+            "the search for non-negative bond moduli does not end: the tensor's entries, or the "
+            "moments of this family, are too many orders apart; take calibration='lattice'"
+        ) from error
+    return found, float(residual)
 
 
 def feasible(moments: Array, target: Array) -> bool:
     """Whether some x ≥ 0 has ``moments @ x == target`` (shapes (k, n), (k,))."""
     scale = np.linalg.norm(target)
-    residual = nnls(moments, target, maxiter=50 * moments.shape[1])[1]
+    residual = _least_squares(moments, target)[1]
     return bool(residual <= _FEASIBLE * scale)
 
 
@@ -44,8 +63,8 @@ def closest(moments: Array, target: Array, wanted: Array) -> Array | None:
         return None
     size = len(wanted)
     stiff = 1e5
-    start = nnls(
-        np.vstack([stiff * a, np.eye(size)]), np.concatenate([stiff * d, wanted]), maxiter=50 * size
+    start = _least_squares(
+        np.vstack([stiff * a, np.eye(size)]), np.concatenate([stiff * d, wanted])
     )[0]
     free = start > 0
     scale = max(np.abs(wanted).max(), start.max())

@@ -53,7 +53,7 @@ def test_mutated_files_are_solved_or_refused_in_one_line(tmp_path, name, seed, t
     code, said = solved(tmp_path, mutated(name, seed, times))
     assert code in (0, 2), said
     if code == 2:
-        assert REFUSAL.match(said), said
+        assert REFUSAL.match(said.strip()), said  # older rich begins with a blank line
         assert len(said.strip().splitlines()) == 1, said
 
 

@@ -85,3 +85,15 @@ def test_moments_on_the_edge_of_the_possible(seed, m):
     assume(np.linalg.eigvalsh(matrix)[0] > 1e-6 * matrix.max())
     found = calibrate(family, ConductivityTensor(matrix), "positive")
     np.testing.assert_allclose(effective_tensor(family, found), matrix, atol=1e-10 * matrix.max())
+
+
+def test_a_search_that_does_not_end_is_refused_by_name(monkeypatch):
+    from solver.errors import CalibrationError
+    from solver.material import positive
+
+    def endless(*args, **options):
+        raise RuntimeError("Maximum number of iterations reached.")
+
+    monkeypatch.setattr(positive, "nnls", endless)
+    with pytest.raises(CalibrationError, match="does not end"):
+        positive.feasible(np.eye(3), np.ones(3))
