@@ -2,8 +2,9 @@
 
 A module of `solver.analyses` or `solver.fracture` takes part by defining ``ANALYSIS``. Its `run` is
 a function of a scene and of keywords; the keywords' names, annotations and defaults are what a
-scene file's table may say (``[modes]`` with ``count = 10``), so that nothing is declared twice. One
-keyword is not the user's: a run that takes `progress` tells it the share that is done.
+scene file's table may say (``[modes]`` with ``count = 10``), so that nothing is declared twice. Two
+keywords are not the user's: a run that takes `progress` tells it the share that is done, one that
+takes `monitors` serves other analyses by them.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ from inspect import Parameter, signature
 
 from ..result import Result
 
+# Keywords of `run` that no scene file gives.
+_OURS = ("progress", "monitors")
 _ROOMS = ("solver.analyses", "solver.fracture")
 
 
@@ -47,7 +50,7 @@ class Analysis:
     @property
     def options(self) -> dict[str, Parameter]:
         """Keywords of `run` after the scene, with annotations (evaluated) and defaults."""
-        return {k: v for k, v in self._keywords.items() if k != "progress"}
+        return {k: v for k, v in self._keywords.items() if k not in _OURS}
 
     @property
     def reports(self) -> bool:

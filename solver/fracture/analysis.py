@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import inf, radians
 
 from ..analyses.recording import Progress
@@ -39,6 +39,7 @@ def run(
     max_solves: int | None = None,
     tolerance: float = 1e-8,
     checkpoint: str | None = None,
+    monitors: Mapping[str, Callable[[Growth], float]] | None = None,
     progress: Progress | None = None,
 ) -> Growth:
     """Let the scene's cracks grow.
@@ -52,7 +53,7 @@ def run(
         See `Programme`.
     advance : float, optional
         The run ends when the furthest tip has gone so far, m.
-    no_fail, tension_only, criterion, batch, max_solves, tolerance, checkpoint
+    no_fail, tension_only, criterion, batch, max_solves, tolerance, checkpoint, monitors
         See `grow`.
     progress : callable, optional
         Told the share that is done: how near the run has come to the first of the ends that it is
@@ -78,12 +79,13 @@ def run(
         tolerance=tolerance,
         max_solves=max_solves,
         until=None if advance is None else lambda run: bool(run.advance >= advance),
+        monitors=monitors,
         checkpoint=checkpoint,
-        listen=None if progress is None else telling(progress, programme, advance, max_solves),
+        listen=None if progress is None else _telling(progress, programme, advance, max_solves),
     )
 
 
-def telling(
+def _telling(
     progress: Progress, programme: Programme, advance: float | None, max_solves: int | None
 ) -> Callable[[Growth], None]:
     """Tells how near a run has come to the nearest of its ends; it never goes back."""

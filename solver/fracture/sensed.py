@@ -20,12 +20,10 @@ from ..problem import Load, Support
 from ..result import Result, Table
 from ..scene import Scene
 from ..state import State
-from .analysis import telling
+from .analysis import run as break_bonds
 from .growth import Growth
-from .programme import Control, Programme
-from .quasistatic import grow
+from .programme import Control
 from .sensing import Sensor
-from .toughness import Toughness
 
 #: The history's column of what the sensor reads.
 DROP = "drop"
@@ -153,19 +151,25 @@ max_solves, tolerance, checkpoint, progress
         density=None,
     )
     sensor = Sensor(conductor, probe_plus, probe_minus)
-    programme = Programme(start, stop, increment, None, levels, control)
-    growth = grow(
+    growth = break_bonds(
         scene,
-        Toughness(G1, G2, n, axis=radians(axis_degrees)),
-        programme,
-        no_fail=() if no_fail is None else (no_fail,),
+        G1,
+        G2,
+        n,
+        axis_degrees=axis_degrees,
+        start=start,
+        stop=stop,
+        increment=increment,
+        levels=levels,
+        control=control,
+        no_fail=no_fail,
         batch=batch,
-        tolerance=tolerance,
+        advance=advance,
         max_solves=max_solves,
-        until=None if advance is None else lambda run: bool(run.advance >= advance),
-        monitors={DROP: sensor},
+        tolerance=tolerance,
         checkpoint=checkpoint,
-        listen=None if progress is None else telling(progress, programme, advance, max_solves),
+        monitors={DROP: sensor},
+        progress=progress,
     )
     return Sensed(growth, sensor)
 

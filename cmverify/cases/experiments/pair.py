@@ -332,7 +332,8 @@ CASES = (
             Check("collinear", "load", {8: 0.2, 16: 0.15}, source=f"{SOURCE}; at c/32 8 % was "
                   "written down and missed: the largest K in growth, 14 % (crack-growth)"),
             *(Check(name, "trapped", bounds, source="the closed form's K once a crack has grown by "
-                    "δ/3, with the largest K in growth (crack-growth: 9–14 % at m = 5)")
+                    "δ/3, with the largest K in growth (crack-growth: 9–14 % at m = 5); put "
+                    "together when the loads were known, so a bound on change and not a prediction")
               for name, bounds in (("collinear", {8: 0.05, 16: 0.03}),
                                    ("collinear m=7", {16: 0.03}))),
             Check("collinear m=7", "load", {16: 0.08}, source="the largest K in growth at m = 7, "

@@ -12,17 +12,19 @@ import resource
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from functools import partial
+from importlib import import_module
+from importlib.util import find_spec
 from statistics import median
 from time import perf_counter, process_time
 from typing import Any, get_args
 
 import numba
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, cg
 from threadpoolctl import threadpool_limits
 
+from cmverify.case import Array
 from cmverify.cases.crack_tip import STIFFNESS
 from cmverify.studies.speed.scenes import crack_tip, kernel_scenes, static_scenes
 from references.analytic import lekhnitskii
@@ -31,8 +33,6 @@ from solver.analyses.statics import solve
 from solver.bonds import Surface
 from solver.linear import Task, TwoLevel, method
 from solver.operators.assembled import to_csr
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -298,8 +298,8 @@ def solvers(resolution: int = 120, tolerance: float = 1e-8, repeats: int = 3) ->
     problem = scene.discretise()
     with threadpool_limits(limits=1, user_api="blas"):
         rows.append(_scipy_cg(problem, tolerance, base))
-        pardiso = _pardiso(problem, base)
-    return rows + ([pardiso] if pardiso else [])
+        other = _pardiso(problem, base)
+    return rows + ([other] if other else [])
 
 
 def _scipy_cg(problem: Discretisation, tolerance: float, base: float) -> Timing:
@@ -337,19 +337,27 @@ def _scipy_cg(problem: Discretisation, tolerance: float, base: float) -> Timing:
     )
 
 
+def pardiso(matrix: sparse.sparray) -> Callable[[Array], Array]:
+    """Factorise a positive definite matrix by MKL PARDISO; returns what solves with the factors.
+
+    Its mode for such matrices (2) takes the upper triangle, and half the time of the general one.
+    """
+    solver = import_module("pypardiso").PyPardisoSolver(mtype=2)
+    upper = sparse.csr_matrix(sparse.triu(matrix, format="csr"))
+    solver.factorize(upper)
+    return lambda right: np.asarray(solver.solve(upper, right))
+
+
 def _pardiso(problem: Discretisation, base: float) -> Timing | None:
     """MKL PARDISO through pypardiso, assembly included; None where it is not installed."""
-    try:
-        import pypardiso
-    except ImportError:
+    if find_spec("pypardiso") is None:
         return None
     rhs = problem.right_hand_side()
     cpu, wall = process_time(), perf_counter()
     matrix = to_csr(problem.operator)
     assembled = process_time() - cpu
-    x = pypardiso.spsolve(sparse.csr_matrix(matrix), rhs)
+    x = pardiso(matrix)(rhs)
     cpu, wall = process_time() - cpu, perf_counter() - wall
-    pypardiso.ps.free_memory(everything=True)
     return _row(
         "MKL PARDISO",
         cpu,

@@ -18,7 +18,7 @@ from threadpoolctl import threadpool_limits
 
 from cmverify.case import Array
 from cmverify.cases.modes.tetrachiral import scene
-from cmverify.studies.speed.measure import Timing
+from cmverify.studies.speed.measure import Timing, pardiso
 from solver import Discretisation, modes
 from solver.operators.assembled import to_csr
 from solver.operators.mass import inertia
@@ -60,7 +60,7 @@ def compare(resolution: int) -> list[Timing]:
     if find_spec("sksparse") is not None:
         solvers["SciPy eigsh, CHOLMOD"] = _cholmod
     if find_spec("pypardiso") is not None:
-        solvers["SciPy eigsh, PARDISO"] = _pardiso
+        solvers["SciPy eigsh, PARDISO"] = pardiso
     for name, factorise in solvers.items():
         with threadpool_limits(limits=1):
             begun = process_time()
@@ -120,13 +120,6 @@ def _superlu(matrix: sparse.csc_array) -> Any:
 
 def _cholmod(matrix: sparse.csc_array) -> Any:
     return import_module("sksparse.cholmod").cholesky(sparse.csc_matrix(matrix))
-
-
-def _pardiso(matrix: sparse.csc_array) -> Any:
-    solver = import_module("pypardiso").PyPardisoSolver(mtype=2)
-    upper = sparse.csr_matrix(sparse.triu(matrix, format="csr"))
-    solver.factorize(upper)
-    return lambda right: solver.solve(upper, right)
 
 
 def _slepc(matrix: sparse.csr_array, mass: sparse.dia_array, shift: float) -> Array:

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 from solver import ConductivityTensor, Family
-from solver.material import ConductiveModuli, calibrate, effective_tensor
+from solver.errors import CalibrationError
+from solver.material import ConductiveModuli, calibrate, effective_tensor, positive
 from solver.material.positive import closest, feasible
 from tests.solver.bodies import exact
 
@@ -88,9 +89,6 @@ def test_moments_on_the_edge_of_the_possible(seed, m):
 
 
 def test_a_search_that_does_not_end_is_refused_by_name(monkeypatch):
-    from solver.errors import CalibrationError
-    from solver.material import positive
-
     def endless(*args, **options):
         raise RuntimeError("Maximum number of iterations reached.")
 
