@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import sys
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 from typer.core import TyperGroup
@@ -21,6 +21,14 @@ from cmverify.studies.anisotropy.command import material
 from cmverify.studies.speed.command import speed
 from cmverify.studies.stability.command import stability
 from cmverify.sweep.command import sweep
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rich.console import Console
+
+    from cmverify.case import Case
+    from cmverify.report.summary import CaseResult, RunInfo
 
 #: What the parser raises, whichever library typer builds on.
 UsageError: Any = typer.BadParameter.__mro__[1]
@@ -167,8 +175,8 @@ def run(
         refuse(str(error))
 
 
-def _run(  # type: ignore[no-untyped-def]
-    cases,
+def _run(
+    cases: Sequence[Case],
     names: list[str] | None,
     level: Level,
     jobs: int,
@@ -279,10 +287,11 @@ def precision(
     machine should have nothing else to do. Then `cmverify report` has a chapter of it.
     """
     from cmverify.report import terminal
+    from cmverify.studies.precision_command import measured
 
     if measure:
-        _measure_precision(_select(names or ["work-precision"]), level, repeats, method or [],
-                           resolution, out)  # fmt: skip
+        cases = _select(names or ["work-precision"])
+        measured(cases, level, repeats, method or [], resolution, out)
         return
     judged, info = _finished(out)
     wanted = {case.name for case in _select(names)}
@@ -298,49 +307,6 @@ def precision(
         refuse(f"{out} has no timed case of that name or quantity")
     made = f"Level {info.level}, {info.jobs} × {info.threads} threads. {info.command}"
     screen.print(made, soft_wrap=True)
-
-
-def _measure_precision(  # type: ignore[no-untyped-def]
-    cases, level: Level, repeats: int, only: list[str], resolution: int | None, out: Path
-) -> None:
-    import datetime
-    import os
-
-    from cmverify.report import precision_chapter, terminal
-    from cmverify.run import environment, folder
-    from cmverify.run.threads import available_cores
-    from cmverify.studies import precision as study
-
-    known = {method.name for case in cases for method in study.methods_of(case)}
-    if strange := sorted(set(only) - known):
-        refuse(f"no method is called {', '.join(strange)}; known: {', '.join(sorted(known))}")
-    try:
-        folder.check(out)
-    except folder.FolderError as error:
-        refuse(str(error))
-    screen = console()
-    started = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
-    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
-    tell = (lambda text: None) if manner().quiet else (lambda text: screen.print(f"{text} …"))
-    points, refused = study.measure(cases, level, repeats, only, resolution, tell)
-    import numba
-
-    found = precision_chapter.Study(
-        points, refused, str(level), numba.get_num_threads(), available_cores(), load, started,
-        environment.describe().as_dict(),
-    )  # fmt: skip
-    terminal.print_study(screen, points)
-    for said in refused:
-        screen.print(f"not measured: {said}", soft_wrap=True)
-    if found.busy:
-        screen.print(
-            f"The machine was busy (load {load:.1f}): these times say little.", style="red"
-        )
-    if only or resolution:
-        return  # a point measured again, not a study
-    precision_chapter.write(found, out)
-    screen.print(f"Points: {out / 'precision.csv'}; the chapter: cmverify report --out {out}",
-                 soft_wrap=True)  # fmt: skip
 
 
 @app.command()
@@ -434,7 +400,7 @@ def main() -> None:
     app()
 
 
-def _select(names: list[str] | None):  # type: ignore[no-untyped-def]
+def _select(names: list[str] | None) -> tuple[Case, ...]:
     from cmverify.cases import registry
 
     try:
@@ -443,7 +409,7 @@ def _select(names: list[str] | None):  # type: ignore[no-untyped-def]
         refuse(str(error))
 
 
-def _finished(out: Path):  # type: ignore[no-untyped-def]
+def _finished(out: Path) -> tuple[list[CaseResult], RunInfo]:
     """Verdicts and info of the run in a folder, judged anew by the checks as they are now."""
     from cmverify.cases import registry
     from cmverify.report import summary
@@ -463,7 +429,7 @@ def _finished(out: Path):  # type: ignore[no-untyped-def]
         refuse(str(error))
 
 
-def _earlier(out: Path):  # type: ignore[no-untyped-def]
+def _earlier(out: Path) -> RunInfo | None:
     """Info of the run that a folder holds already, or None."""
     from cmverify.report import summary
 
@@ -473,7 +439,7 @@ def _earlier(out: Path):  # type: ignore[no-untyped-def]
         return None
 
 
-def _beside(own, info, out: Path, screen):  # type: ignore[no-untyped-def]
+def _beside(own: list[CaseResult], info: RunInfo, out: Path, screen: Console) -> list[CaseResult]:
     """A run's results with those that its folder keeps of earlier ones; says how they stand."""
     from cmverify.cases import registry
     from cmverify.report import summary
@@ -492,7 +458,9 @@ def _beside(own, info, out: Path, screen):  # type: ignore[no-untyped-def]
     return judged
 
 
-def _write(judged, info, out: Path, json: Path | None, screen) -> None:  # type: ignore[no-untyped-def]
+def _write(
+    judged: list[CaseResult], info: RunInfo, out: Path, json: Path | None, screen: Console
+) -> None:
     from cmverify.report import summary
     from cmverify.report.build import build
     from cmverify.run import results

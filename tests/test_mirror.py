@@ -12,6 +12,7 @@ PACKAGES = ("solver", "cmverify")
 #: Modules whose tests have another name, and which. A new module needs a test of its own name,
 #: or one of its room's; nothing is to be added here without a reason.
 ELSEWHERE = {
+    "cmverify/studies/precision_command.py": "tests/cmverify/studies/test_precision.py",
     # Aliases of types, and classes without a body.
     "solver/arrays.py": "tests/test_architecture.py",
     "solver/errors.py": "tests/solver/test_scene.py",
