@@ -4,6 +4,7 @@ import os
 from collections.abc import Iterator
 
 import pytest
+from hypothesis import settings
 
 from cmverify.run.threads import VARIABLES, threads_per_worker
 
@@ -14,6 +15,13 @@ SHARE = threads_per_worker(int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
 for _name in VARIABLES:
     if _name != "NUMBA_NUM_THREADS":
         os.environ.setdefault(_name, str(SHARE))
+
+
+# The same scenes in each run, so that a failure is the change's and not the day's; `pytest
+# --hypothesis-profile=explore` draws new ones.
+settings.register_profile("repeatable", derandomize=True, deadline=None)
+settings.register_profile("explore", derandomize=False, deadline=None, print_blob=True)
+settings.load_profile("repeatable")
 
 
 @pytest.fixture(scope="session", autouse=True)

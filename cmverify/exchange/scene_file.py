@@ -144,9 +144,10 @@ def source_of(path: Path) -> Source:
     except RecursionError as error:
         raise SceneFileError(f"{path} is not TOML of a scene: nested too deeply") from error
     except ValueError as error:
+        # Where the text breaks off tomllib says "at end of document", and no line.
         found = re.search(r"at line (\d+)", str(error))
-        place = f"{path}:{found[1]}:" if found else f"{path}:"
-        raise SceneFileError(f"{place} is not TOML: {error}") from error
+        line = int(found[1]) if found else max(1, len(text.splitlines()))
+        raise SceneFileError(f"{path}:{line}: is not TOML: {error}") from error
 
 
 def declared(source: Source) -> SceneFile:

@@ -1,5 +1,6 @@
 """Scene files: solved as written, refused with the line that is wrong."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -104,7 +105,7 @@ def test_the_second_of_two_tables_is_named_by_its_own_line(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("[discretisation\n", "is not TOML"),
+        ("[discretisation\n", r"scene\.toml:\d+: is not TOML"),
         ("[discretisation]\nspacing = 0.1\n", r"\[region\] is missing"),
         (SMALL.replace("[[5, 2], [2, 1]]", "[[1, 2], [2, 1]]"), "positive"),
     ],
@@ -112,6 +113,16 @@ def test_the_second_of_two_tables_is_named_by_its_own_line(tmp_path):
 def test_what_cannot_be_a_scene_is_refused(tmp_path, text, message):
     with pytest.raises(SceneFileError, match=message):
         scene_file.read(written(tmp_path, text))
+
+
+def test_wherever_a_text_breaks_off_its_line_is_named(tmp_path):
+    for end in range(len(SMALL)):
+        text = SMALL[:end]
+        try:
+            scene_file.source_of(written(tmp_path, text))
+        except SceneFileError as error:
+            line = max(1, len(text.splitlines()))
+            assert re.search(rf"scene\.toml:{line}: is not TOML", str(error)), (text, error)
 
 
 def test_a_missing_file_is_refused(tmp_path):
