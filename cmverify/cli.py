@@ -157,6 +157,7 @@ def run(
     resume: Annotated[bool, typer.Option("--resume", help="Keep finished measurements.")] = False,
     timeout: Annotated[float, typer.Option(help="Seconds for a single measurement.")] = 3600.0,
     json: Annotated[Path | None, typer.Option(help="Write all numbers to this file.")] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace that file.")] = False,
 ) -> None:
     """Run cases, judge them and write the report. Exit code 0 only if every check holds."""
     from cmverify.run import folder
@@ -168,7 +169,9 @@ def run(
         refuse(f"--timeout {timeout:g}: a measurement needs some time")
     try:
         if json is not None:
+            folder.keep([json], overwrite)
             folder.check_file(json)
+        folder.require_own(out)
         with folder.claimed(out):
             _run(cases, names, level, jobs, out, resume, timeout, json)
     except folder.FolderError as error:
@@ -240,6 +243,7 @@ def _run(
 def report(
     out: Folder = Path("report"),
     json: Annotated[Path | None, typer.Option(help="Write all numbers to this file.")] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace that file.")] = False,
     schema: Annotated[
         bool, typer.Option("--schema", help="Print the JSON schema of results.json, and stop.")
     ] = False,
@@ -260,7 +264,9 @@ def report(
     judged = _beside(judged, info, out, screen)
     try:
         folder.check_file(out / "results.json")
-        folder.check_file(json or out / "results.json")
+        if json is not None:
+            folder.keep([json], overwrite)
+            folder.check_file(json)
     except folder.FolderError as error:
         refuse(str(error))
     terminal.print_missing(screen, judged)
@@ -280,6 +286,9 @@ def precision(
     repeats: Annotated[int, typer.Option(min=3, help="Most repetitions of a time.")] = 5,
     method: Annotated[list[str] | None, typer.Option(help="With --measure: only these.")] = None,
     resolution: Annotated[int | None, typer.Option(min=1, help="One, not the level's.")] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="With --measure: replace an earlier study.")
+    ] = False,
 ) -> None:
     """Show error against time; ★ marks what nothing else beats.
 
@@ -291,7 +300,7 @@ def precision(
 
     if measure:
         cases = _select(names or ["work-precision"])
-        measured(cases, level, repeats, method or [], resolution, out)
+        measured(cases, level, repeats, method or [], resolution, out, overwrite)
         return
     judged, info = _finished(out)
     wanted = {case.name for case in _select(names)}
@@ -345,27 +354,33 @@ def errata(
     every: Annotated[bool, typer.Option("--all", help="Show what is right too.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print everything as JSON.")] = False,
     page: Annotated[Path | None, typer.Option(help="Write everything as an HTML page.")] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace that page.")] = False,
 ) -> None:
     """Judge the paper's equations and numbers, and prove each judgement."""
     from cmverify import errata as audit
+    from cmverify.run import folder
+
+    try:
+        if page is not None:
+            folder.keep([page], overwrite)
+    except folder.FolderError as error:
+        refuse(str(error))
     from references import errata as paper
 
     try:
         chosen = [paper.entry(number)] if number is not None else paper.entries()
+        if page is not None:
+            folder.check_file(page)
     except KeyError as error:
         refuse(error.args[0])
+    except folder.FolderError as error:
+        refuse(str(error))
     if json:
         judged = [audit.judge(entry) for entry in chosen]
         typer.echo(audit.as_json(judged))
         raise typer.Exit(1 if any(item.failed for item in judged) else 0)
     if page is not None:
         from cmverify.report.errata_page import write_page
-        from cmverify.run import folder
-
-        try:
-            folder.check_file(page)
-        except folder.FolderError as error:
-            refuse(str(error))
 
         failed = write_page([audit.judge(entry) for entry in chosen], page)
         typer.echo(f"{page}")

@@ -70,6 +70,12 @@ def bounds_of(case: Case, method: str, n: int) -> dict[str, Check]:
     return {check.quantity: check for check in found}
 
 
+def files_in(folder: Path) -> list[Path]:
+    """The files that an export writes, whether they are there or not."""
+    names = [f"{name}.npz" for name in ("particles", "bonds", "boundary", "reference")]
+    return [folder / name for name in ("case.json", *names, "particles.vtu", "reference.vtu")]
+
+
 def write_case(case: Case, pose: Pose, n: int, folder: Path) -> list[Path]:
     """Write all files of a case at spacing length/n; returns their paths."""
     from solver.result import write_arrays

@@ -21,7 +21,7 @@ def new(
     import difflib
 
     from cmverify.exchange import start_file
-    from cmverify.run import results
+    from cmverify.run import folder, results
 
     if kind is None:
         width = max(map(len, start_file.KINDS))
@@ -33,10 +33,11 @@ def new(
         hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(start_file.KINDS)}"
         refuse(f"there is no kind {kind!r}; {hint}")
     path = out or Path(f"{kind}.toml")
-    if path.exists() and not overwrite:
-        refuse(f"{path} exists already: choose another --out, or --overwrite")
     try:
+        folder.keep([path], overwrite, folder.OTHER_OUT)
         results.write_text(path, start_file.text(kind))
+    except folder.FolderError as error:
+        refuse(str(error))
     except OSError as error:
         refuse(f"{path} cannot be written: {error.strerror or error}")
     typer.echo(f"wrote {path}; solve it with: cmverify solve {path}")
@@ -47,11 +48,13 @@ def schema(
     folder: Annotated[
         Path | None, typer.Option(help="Write scene.schema.json and scene-files.md there.")
     ] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace these files.")] = False,
 ) -> None:
     """Give the JSON schema of scene files, for editors, and their reference page."""
     from cmverify.exchange import reference_page
     from cmverify.exchange import schema as declared
     from cmverify.run import results
+    from cmverify.run.folder import FolderError, keep
 
     wanted = {}
     if folder is not None:
@@ -61,6 +64,10 @@ def schema(
         wanted[out] = declared.as_text()
     if not wanted:
         typer.echo(declared.as_text(), nl=False)
+    try:
+        keep(wanted, overwrite)
+    except FolderError as error:
+        refuse(str(error))
     for path, text in wanted.items():
         try:
             results.write_text(path, text)

@@ -27,6 +27,9 @@ def export(
     level: Chosen = Level.QUICK,
     resolution: Resolution = None,
     out: Annotated[Path | None, typer.Option(help="Folder of the files; the case's name.")] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace files of an earlier export.")
+    ] = False,
 ) -> None:
     """Write a case as plain files for another program: body, solid, supports, loads, references.
 
@@ -34,8 +37,9 @@ def export(
     """
     from cmverify.cases import registry
     from cmverify.console import columns, console, show
-    from cmverify.exchange.case_export import pose_of, write_case
+    from cmverify.exchange.case_export import files_in, pose_of, write_case
     from cmverify.exchange.compare import resolution_of
+    from cmverify.run import folder
 
     screen = console()
     if name is None:
@@ -50,7 +54,10 @@ def export(
         case = registry.get(name)
         pose = pose_of(case, problem)
         n = resolution_of(case, pose, level, resolution)
-        paths = write_case(case, pose, n, out or Path(case.name))
+        place = out or Path(case.name)
+        folder.keep(files_in(place), overwrite, folder.OTHER_OUT)
+        folder.check_file(place / "case.json")
+        paths = write_case(case, pose, n, place)
     except ValueError as error:
         refuse(str(error))
     except OSError as error:
@@ -76,6 +83,9 @@ def compare(
         Path | None, typer.Option(help="Take our result from this run's folder if it is there.")
     ] = None,
     out: Annotated[Path, typer.Option("--out", help="Folder of the page.")] = Path("comparison"),
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace an earlier comparison.")
+    ] = False,
 ) -> None:
     """Judge results of other programs as ours are, and write the report with both side by side.
 
@@ -90,6 +100,8 @@ def compare(
     from cmverify.run import folder
 
     try:
+        earlier = (out / "index.html", out / "results.json")
+        folder.keep(earlier, overwrite, folder.OTHER_OUT)
         case = registry.get(name)
         pose = pose_of(case, problem)
         n = judging.resolution_of(case, pose, level, resolution)

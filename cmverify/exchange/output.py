@@ -15,6 +15,8 @@ from cmverify.exchange import model
 from solver.result import Result, Table, suffixed
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from solver.arrays import Array
     from solver.bonds import Cells
     from solver.state import State
@@ -163,4 +165,17 @@ def existing(stem: Path) -> list[Path]:
         for path in sorted(stem.parent.iterdir()):
             if re.fullmatch(start + r"\.([\w-]+\.csv|fem\.(vtu|npz|json))", path.name):
                 found.append(path)
+    return found
+
+
+def existing_series(options: Mapping[str, Any]) -> list[Path]:
+    """Files of the series that an analysis would take the place of; none where it goes on."""
+    checkpoint = options.get("checkpoint")
+    if options.get("series") is None or (checkpoint is not None and Path(checkpoint).exists()):
+        return []
+    stem = Path(options["series"])
+    found = [path] if (path := suffixed(stem, ".pvd")).exists() else []
+    frame = re.compile(re.escape(stem.name) + r"_\d{5,}\.vtu")
+    if stem.parent.is_dir():
+        found += [p for p in sorted(stem.parent.iterdir()) if frame.fullmatch(p.name)]
     return found

@@ -12,7 +12,7 @@ _HEAD = """\
 
 What `cmverify solve SCENE.toml` reads, table by table. This page and
 [`scene.schema.json`](scene.schema.json), which editors understand, are written by
-`cmverify schema --folder docs` from the declaration that checks the files. Begin with
+`cmverify schema --folder docs --overwrite` from the declaration that checks the files. Begin with
 `cmverify new KIND`; `examples/` has a file of every kind.
 
 A file is TOML in UTF-8, in SI units. Whatever it says that does not exist or makes no sense is

@@ -40,7 +40,7 @@ def solve(
 
     from cmverify.exchange import comparison, scene_file
     from cmverify.exchange.export import check_writable
-    from cmverify.exchange.output import existing
+    from cmverify.exchange.output import existing, existing_series
     from cmverify.run.progress import share_done
 
     screen = console()
@@ -58,6 +58,9 @@ def solve(
             None if max_memory is None else max_memory * 2**30,
             max_minutes * 60,
         )
+        if not overwrite and (there := existing_series(request.options)):
+            more = f" and {len(there) - 1} more" if len(there) > 1 else ""
+            refuse(f"the series {there[0]}{more} exists already: name another, or --overwrite")
         comparing = compare is not None or request.file.compare is not None
         if comparing:
             comparison.check(request)

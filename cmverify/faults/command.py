@@ -26,6 +26,7 @@ def faults(
     ] = False,
     jobs: Annotated[int, typer.Option(help="Worker processes; 0 for one a core.")] = 0,
     out: Annotated[Path, typer.Option("--out", help="Folder of the page.")] = Path("report"),
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the page.")] = False,
 ) -> None:
     """Put faults into solver, references and judges, and see which cases fail at level quick.
 
@@ -33,6 +34,7 @@ def faults(
     """
     from cmverify.console import console
     from cmverify.faults import page, registry, table
+    from cmverify.run import folder
     from cmverify.run.threads import available_cores
 
     known = registry.all_faults()
@@ -44,6 +46,11 @@ def faults(
             f"kinds: {', '.join(sorted({f.kind for f in known}))}"
         )
     chosen = [f for f in known if not wanted or f.name in wanted or f.kind in wanted]
+    try:
+        folder.keep([out / page.NAME], overwrite, folder.OTHER_OUT)
+        folder.check_file(out / page.NAME)
+    except folder.FolderError as error:
+        refuse(str(error))
     screen = console()
     with screen.status("") as status:
         results = table.attempt(

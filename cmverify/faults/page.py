@@ -12,6 +12,7 @@ from cmverify.run.results import write_text
 if TYPE_CHECKING:
     from cmverify.faults.table import Result
 
+NAME = "faults.html"
 TEMPLATE = """<!doctype html>
 <html lang="en">
 <head>
@@ -68,6 +69,6 @@ def write(results: Sequence[Result], command: str, folder: Path) -> Path:
         every="--all" in command,
         command=command,
     )
-    path = folder / "faults.html"
+    path = folder / NAME
     write_text(path, text)
     return path

@@ -14,7 +14,7 @@ from cmverify.studies.precision import Point, as_csv, seconds_to
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-NAME, FORMAT = "precision.json", 1
+NAME, TABLE, FORMAT = "precision.json", "precision.csv", 1
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ def write(study: Study, folder: Path) -> None:
     """Write precision.json and precision.csv."""
     data = {"format": FORMAT, **asdict(study)}
     write_text(folder / NAME, json.dumps(data, indent=1, ensure_ascii=False))
-    write_text(folder / "precision.csv", as_csv(study.points))
+    write_text(folder / TABLE, as_csv(study.points))
 
 
 def read(folder: Path) -> Study | None:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
 #: The file that a run holds locked; it holds the process number.
 LOCK = ".lock"
+#: What to do where a file is there already.
+OTHER_NAME, OTHER_OUT = (f"choose another {what}, or --overwrite" for what in ("name", "--out"))
+#: What a run writes at the top of its folder, and what tells that a folder is a run's.
+OWN, MARK = ("index.html", "results.json", "previous.json"), "run.json"
 
 
 class FolderError(ValueError):
@@ -55,6 +59,40 @@ def check_file(path: Path) -> None:
         trial.unlink()
     except OSError as error:
         raise FolderError(f"{path} cannot be written: {error.strerror}") from error
+
+
+def keep(paths: Iterable[Path], overwrite: bool, instead: str = OTHER_NAME) -> None:
+    """Refuse to take the place of files that are there, unless that was asked for.
+
+    Raises
+    ------
+    FolderError
+        Naming them.
+    """
+    there = [str(path) for path in paths if os.path.lexists(path)]
+    if there and not overwrite:
+        verb = "exists" if len(there) == 1 else "exist"
+        raise FolderError(f"{', '.join(there)} {verb} already: {instead}")
+
+
+def require_own(folder: Path) -> None:
+    """Refuse a folder in which a run would take the place of files that no run has written.
+
+    It may take the place of an earlier run, whose numbers it sets aside.
+
+    Raises
+    ------
+    FolderError
+        Naming them.
+    """
+    if (folder / MARK).is_file():
+        return
+    if there := [name for name in OWN if (folder / name).exists()]:
+        verb = "is" if len(there) == 1 else "are"
+        raise FolderError(
+            f"{folder} is not the folder of a run, and {', '.join(there)} {verb} there: "
+            f"choose another --out"
+        )
 
 
 @contextmanager

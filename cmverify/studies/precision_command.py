@@ -18,6 +18,7 @@ def measured(
     only: list[str],
     resolution: int | None,
     out: Path,
+    overwrite: bool = False,
 ) -> None:
     """Take errors and times of some cases, print them, and write the report's chapter.
 
@@ -33,6 +34,8 @@ def measured(
         One, not those of the level.
     out : Path
         Folder of the report.
+    overwrite : bool
+        Whether the study takes the place of the one that stands there.
     """
 
     from cmverify.report import precision_chapter, terminal
@@ -44,6 +47,9 @@ def measured(
     if strange := sorted(set(only) - known):
         refuse(f"no method is called {', '.join(strange)}; known: {', '.join(sorted(known))}")
     try:
+        if not (only or resolution):
+            names = (precision_chapter.NAME, precision_chapter.TABLE)
+            folder.keep([out / name for name in names], overwrite, folder.OTHER_OUT)
         folder.check(out)
     except folder.FolderError as error:
         refuse(str(error))

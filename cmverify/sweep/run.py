@@ -87,10 +87,13 @@ def run(
     listen: Listen = _silent,
 ) -> Sweep:
     """Do what is not done yet, and write the table. Parameters as in `sweep`."""
-    from cmverify.run.folder import claimed
+    from cmverify.run.folder import claimed, keep
 
     if jobs < 1:
         raise ValueError(f"at least one process is needed, not {jobs}")
+    if not (folder / "points").is_dir():
+        # Tables of an earlier sweep are made anew; those of others are not its own.
+        keep([folder / "sweep.csv", folder / "sweep.parquet"], False, "choose another --out")
     with claimed(folder):
         (folder / "points").mkdir(exist_ok=True)
         records = {p.key: r for p in found if (r := work.load(folder, p.key)) is not None}

@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 from cmverify import cli, errata
 from cmverify.cli import app
 from cmverify.exchange import scene_file
+from cmverify.exchange.output import existing_series
 from tests.cmverify.exchange.test_scene_file import SMALL
 
 #: Of each command: arguments that are wrong before any work. `file` is a file, `folder` a folder.
@@ -19,8 +20,8 @@ WRONG = {
     "compare": [["nosuch", "a.npz"], [], ["patch", "missing.npz"]],
     "doctor": [["nosuch"]],
     "errata": [["999"], ["--page", "file/x.html"], ["--page", "folder"]],
-    "export": [["nosuch"]],
-    "faults": [["nosuch"], ["--nosuch"]],
+    "export": [["nosuch"], ["free-plates", "--out", "file/x"]],
+    "faults": [["nosuch"], ["--nosuch"], ["--out", "file/x"]],
     "list": [["nosuch"]],
     "material": [[], ["nosuch"], ["silicon", "--m", "0"], ["--voigt", "1,0,0,1,0,nan"],
                  ["broken.toml"], ["folder.toml"]],
@@ -149,3 +150,83 @@ def test_a_solve_writes_whole_files_or_none(here, monkeypatch):
     assert code == 2
     assert "No space left" in said
     assert not [p for p in here.iterdir() if p.suffix in (".npz", ".partial")]
+
+
+# ---- nothing is overwritten unasked ------------------------------------------------------
+
+#: Of each command that writes: arguments, and a file that it would take the place of.
+WRITES = {
+    "compare": (["free-plates", "x.json"], "comparison/results.json"),
+    "errata": (["1", "--page", "page.html"], "page.html"),
+    "export": (["free-plates"], "free-plates/bonds.npz"),
+    "faults": (["--out", "report"], "report/faults.html"),
+    "material": (["silicon", "--json", "numbers.json"], "numbers.json"),
+    "new": (["static"], "static.toml"),
+    "precision": (["--measure"], "report/precision.csv"),
+    "run": (["patch", "--json", "numbers.json"], "numbers.json"),
+    "schema": (["--folder", "docs"], "docs/scene-files.md"),
+    "solve": (["scene.toml"], "scene.npz"),
+    "speed": ([], "speed/speed.png"),
+    "stability": (["--material", "silicon"], "report/stability-polar-1.png"),
+}
+#: A run takes the place of a run, a sweep goes on, and a report is asked to be rendered again.
+OWN = {"run": "report/index.html", "sweep": "sweep/sweep.csv"}
+READS = {"doctor", "list", "report", "validity"}
+
+
+def precious(path):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("precious")
+    return path
+
+
+def test_every_command_that_writes_asks_first():
+    group = typer.main.get_command(app)
+    assert set(WRITES) | set(OWN) | READS == set(group.commands)
+    asking = {n for n, c in group.commands.items() if "overwrite" in {p.name for p in c.params}}
+    assert asking == set(WRITES) | {"report"}
+
+
+@pytest.mark.parametrize("command", WRITES)
+def test_nothing_is_overwritten_unasked(here, command):
+    given, name = WRITES[command]
+    path = precious(here / name)
+    before = sorted(here.rglob("*"))
+    code, said = invoked(command, *given)
+    assert (code, path.name in said, "--overwrite" in said) == (2, True, True), said
+    assert path.read_text() == "precious"
+    assert sorted(here.rglob("*")) == before
+
+
+@pytest.mark.parametrize("command", OWN)
+def test_folders_of_others_are_left_alone(here, command):
+    path = precious(here / OWN[command])
+    code, said = invoked(command, {"run": "patch"}.get(command, "sweep.toml"))
+    assert (code, path.name in said) == (2, True), said
+    assert path.read_text() == "precious"
+
+
+@pytest.mark.parametrize(
+    ("command", "given", "name"),
+    [("errata", ["1", "--page", "page.html"], "page.html"),
+     ("export", ["free-plates"], "free-plates/case.json"),
+     ("schema", ["--out", "schema.json"], "schema.json")],
+)  # fmt: skip
+def test_what_is_asked_for_is_overwritten(here, command, given, name):
+    path = precious(here / name)
+    code, said = invoked(command, *given, "--overwrite")
+    assert code == 0, said
+    assert path.read_text(encoding="utf-8") != "precious"
+
+
+def test_a_series_is_kept_unless_a_checkpoint_goes_on(tmp_path):
+    stem = tmp_path / "frames"
+    assert existing_series({"series": str(stem)}) == []
+    precious(tmp_path / "frames_extra.vtu")
+    first, listed = precious(tmp_path / "frames_00000.vtu"), precious(tmp_path / "frames.pvd")
+    assert existing_series({"series": str(stem)}) == [listed, first]
+    state = tmp_path / "state.npz"
+    going = {"series": str(stem), "checkpoint": str(state)}
+    assert existing_series(going) == [listed, first]
+    state.touch()
+    assert existing_series(going) == existing_series({}) == []

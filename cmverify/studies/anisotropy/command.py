@@ -42,11 +42,13 @@ def material(
     """Say what bonds make of a solid, what to expect of it, and which calibration to use."""
     from cmverify.console import console
     from cmverify.run import results
+    from cmverify.run.folder import FolderError, keep
     from cmverify.studies.anisotropy.profile import profile
 
-    for path in (out, json):
-        if path is not None and path.exists() and not overwrite:
-            refuse(f"{path} exists already: choose another name, or --overwrite")
+    try:
+        keep([path for path in (out, json) if path is not None], overwrite)
+    except FolderError as error:
+        refuse(str(error))
     if out is not None and out.suffix not in (".png", ".svg", ".pdf"):
         refuse(f"--out {out}: a figure is a .png, .svg or .pdf")
     given = {"--isotropic": isotropic, "--orthotropic": orthotropic, "--voigt": voigt,

@@ -28,6 +28,7 @@ def speed(
     out: Annotated[Path, typer.Option("--out", help="Folder for the figure and numbers.")] = Path(
         "speed"
     ),
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace these files.")] = False,
 ) -> None:
     """Measure the bond solver beside sparse matrices and their solvers, as ratios in one run.
 
@@ -38,10 +39,13 @@ def speed(
     from cmverify.judge.verdict import Verdict
     from cmverify.run import folder
     from cmverify.run.environment import describe
+    from cmverify.run.results import write_text
     from cmverify.studies.speed import measure, modes, verdicts
 
     screen = console()
     try:
+        earlier = (out / "speed.json", out / "speed.png")
+        folder.keep(earlier, overwrite, folder.OTHER_OUT)
         folder.check_file(out / "speed.json")
     except folder.FolderError as error:
         refuse(str(error))
@@ -80,7 +84,6 @@ def speed(
         tables[title] = [row.as_dict() for row in rows]
         found += judge(rows) if judge else []
     _show_verdicts(screen, found)
-    out.mkdir(parents=True, exist_ok=True)
     document = {
         "machine": describe().as_dict(),
         "level": str(level),
@@ -88,7 +91,7 @@ def speed(
         "verdicts": [v.as_dict() for v in found],
     }
     text = json.dumps(document, indent=1, ensure_ascii=False) + "\n"
-    (out / "speed.json").write_text(text, encoding="utf-8")
+    write_text(out / "speed.json", text)
     from cmverify.studies.speed.figure import draw
 
     draw(tables, out / "speed.png")

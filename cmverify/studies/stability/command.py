@@ -58,6 +58,9 @@ def stability(
     out: Annotated[
         Path, typer.Option("--out", help="Folder of stability.html and figures.")
     ] = Path("report"),
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace an earlier page and its figures.")
+    ] = False,
 ) -> None:
     """Say how stable solids are with every calibration, and map it.
 
@@ -72,6 +75,8 @@ def stability(
 
     screen = console()
     try:
+        earlier = [out / "stability.html", *sorted(out.glob("stability-*.png"))]
+        folder.keep(earlier, overwrite, folder.OTHER_OUT)
         solids = {name: materials.named(name) for name in material} if material else _suite()
         verdicts = [
             verdict

@@ -22,7 +22,7 @@ DOCS = Path(__file__).parents[3] / "docs"
     reason="older pydantic says the same schema in other words",
 )
 def test_docs_are_current():
-    """Else: cmverify schema --folder docs."""
+    """Else: cmverify schema --folder docs --overwrite."""
     assert (DOCS / "scene.schema.json").read_text(encoding="utf-8") == schema.as_text()
     assert (DOCS / "scene-files.md").read_text(encoding="utf-8") == reference_page.page()
 
