@@ -282,7 +282,12 @@ class Equilibrium:
                 self._part(offsets, origins)
             if touched[origins].any() or touched[ends].any() or self.sound.acting is not None:
                 self.rhs = self.border = None
-        self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
+        self._operator = self._made()
+
+    def _made(self) -> BondOperator:
+        """The operator of the bonds as they are now."""
+        known = self._operator
+        return BondOperator(self._bonds, known.moduli, self.prescribed, known)
 
     def _part(self, offsets: Indices, origins: Indices) -> None:
         """Cut what ends at the surface where the crack runs through it."""
@@ -300,7 +305,7 @@ class Equilibrium:
         self.rhs = self.border = None
         if self._resuming:
             return
-        self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
+        self._operator = self._made()
         if self._unloaded():
             raise MechanismError("a crack has run through an edge that carries a load")
         self.released_by_parting += before - self._surface_potential()
@@ -337,7 +342,7 @@ class Equilibrium:
         self.aside[particles] = True
         self._bonds = self.bonds.without_ends(particles)
         # Whole before anything is refused: whoever ends the run looks at what it has come to.
-        self._operator = BondOperator(self._bonds, self._operator.moduli, self.prescribed)
+        self._operator = self._made()
         self.rhs = self.border = None
         self.x = unknowns[:, self.operator.active].ravel()
         self.preconditioner = None

@@ -38,11 +38,26 @@ class BondOperator(LinearOperator):
     prescribed : ndarray of bool, shape (components, N)
         Prescribed unknowns. Particles with all of them prescribed are not unknowns; single
         prescribed components of the others are kept as identity rows.
+    before : BondOperator, optional
+        Of the same body before bonds broke or particles were set aside: the diagonal blocks of
+        particles whose bonds are what they were are taken from it, the same to the last bit.
     """
 
-    def __init__(self, bonds: Bonds, moduli: Moduli, prescribed: Mask) -> None:
+    def __init__(
+        self,
+        bonds: Bonds,
+        moduli: Moduli,
+        prescribed: Mask,
+        before: BondOperator | None = None,
+    ) -> None:
         self.bonds, self.moduli = bonds, moduli
-        self.blocks: Array = each_offset_blocks(bonds.family, moduli)
+        if before is not None and (
+            before.moduli is not moduli or before.bonds.lattice is not bonds.lattice
+        ):
+            before = None
+        self.blocks: Array = (
+            each_offset_blocks(bonds.family, moduli) if before is None else before.blocks
+        )
         self.components = moduli.components
         if prescribed.shape != (self.components, bonds.lattice.count):
             raise ValueError(f"prescribed must have shape {(self.components, bonds.lattice.count)}")
@@ -77,6 +92,11 @@ class BondOperator(LinearOperator):
         self.bulk = np.stack(
             [_diagonal_sums(own, np.ones((bonds.family.size, 1)))[:, 0] for own in self.blocks]
         )
+        self._whole: NDArray[np.int64]
+        self._whole_diagonal: Array
+        self._whole, self._whole_diagonal = self._of_whole(before)
+        #: Diagonal blocks of the bonds' special particles, surface's nodes apart, (entries, those).
+        self.special_diagonal: Array = self._of_special(before)
         #: Runs of particles of one kind, as the kernels read them.
         self.segments, self.diagonal = self._layout()
         #: Stiffness of the bonds that end at the surface, if there are any.
@@ -110,6 +130,41 @@ class BondOperator(LinearOperator):
         given[:, self._on_surface] = values
         return self.ended_stiffness.reaction(given)[:, self._on_surface]
 
+    def _sums(self, particles: NDArray[np.int64], factors: Array) -> Array:
+        """Diagonal blocks of particles with factors (family size, n) on bonds: (entries, n)."""
+        if not isinstance(self.moduli, Mixture):
+            return _diagonal_sums(self.blocks[0], factors)
+        found = np.empty((self.bulk.shape[1], len(particles)))
+        of = self.moduli.of[particles]
+        for phase, blocks in enumerate(self.blocks):
+            found[:, of == phase] = _diagonal_sums(blocks, factors[:, of == phase])
+        return found
+
+    def _of_whole(self, before: BondOperator | None) -> tuple[NDArray[np.int64], Array]:
+        """Particles short of neighbours or partly prescribed, and their blocks with whole bonds."""
+        particles = self.bonds.short
+        if self.identity_rows is not None:
+            particles = np.union1d(particles, self.active[self.identity_rows.any(axis=0)])
+        if before is not None and np.isin(particles, before._whole).all():
+            return before._whole, before._whole_diagonal
+        return particles, self._sums(particles, self.bonds.exist(particles).astype(np.float64))
+
+    def _of_special(self, before: BondOperator | None) -> Array:
+        """Diagonal blocks of special particles; only changed ones are summed up anew."""
+        bonds = self.bonds
+        if before is None or not np.isin(before.bonds.special, bonds.special).all():
+            return self._sums(bonds.special, bonds.strengths)
+        at = np.searchsorted(bonds.special, before.bonds.special)
+        everybody = len(at) == len(bonds.special)
+        now = bonds.strengths if everybody else bonds.strengths[:, at]
+        same = (now == before.bonds.strengths).all(axis=0)
+        found = np.empty((self.bulk.shape[1], len(bonds.special)))
+        found[:, at[same]] = before.special_diagonal[:, same]
+        other = np.ones(len(bonds.special), dtype=bool)
+        other[at[same]] = False
+        found[:, other] = self._sums(bonds.special[other], bonds.strengths[:, other])
+        return found
+
     def _layout(self) -> tuple[NDArray[np.uint64], Array]:
         """Segments of the active particles and the diagonal blocks that differ from the bulk's."""
         bonds, lattice = self.bonds, self.bonds.lattice
@@ -121,15 +176,13 @@ class BondOperator(LinearOperator):
             # Their blocks differ for whoever inverts them.
             kind[self.identity_rows.any(axis=0) & (kind == segments.BULK)] = segments.TRUNCATED
         own = kind != segments.BULK
-        diagonal = np.empty((self.bulk.shape[1], int(own.sum())))
         special = bonds.column[self.active]
-        for phase, blocks in enumerate(self.blocks):
-            short = (kind == segments.TRUNCATED) & (self.phase == phase)
-            diagonal[:, short[own]] = _diagonal_sums(
-                blocks, bonds.exist(self.active[short]).astype(np.float64)
-            )
-            some = (kind == segments.SPECIAL) & (self.phase == phase)
-            diagonal[:, some[own]] = _diagonal_sums(blocks, bonds.strengths[:, special[some]])
+        diagonal = np.empty((self.bulk.shape[1], int(own.sum())))
+        some = kind == segments.SPECIAL
+        diagonal[:, some[own]] = self.special_diagonal[:, special[some]]
+        some = kind == segments.TRUNCATED
+        known = np.searchsorted(self._whole, self.active[some])
+        diagonal[:, some[own]] = self._whole_diagonal[:, known]
         column = np.cumsum(own) - 1
         found = segments.of(bonds.lattice, self.active, kind, column, special, self.phase)
         return found, diagonal
@@ -357,6 +410,10 @@ class BondOperator(LinearOperator):
 def _diagonal_sums(blocks: Array, factors: Array) -> Array:
     """Diagonal blocks for bond factors of shape (family size, n): (entries, n).
 
-    Order 11, 22 … as the kernels read it: 11, 12, 22, 1θ, 2θ, θθ.
+    Order 11, 22 … as the kernels read it: 11, 12, 22, 1θ, 2θ, θθ. Bond by bond, so that the bits
+    of a particle's block do not depend on how many others are summed up with it.
     """
-    return np.einsum("oe,on->en", blocks, factors)
+    total = np.zeros((blocks.shape[1], factors.shape[1]))
+    for block, factor in zip(blocks, factors, strict=True):
+        total += block[:, None] * factor
+    return total

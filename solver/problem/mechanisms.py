@@ -47,7 +47,13 @@ def slack_particles(operator: BondOperator) -> NDArray[np.int64]:
         return np.zeros(0, dtype=np.int64)
     bulk = np.abs(np.einsum("pii->pi", operator.bulk_blocks))
     unit = np.sqrt(np.maximum(bulk, np.finfo(np.float64).tiny))[operator.phase[operator.own]]
-    sizes = np.abs(np.linalg.eigvalsh(blocks / (unit[:, :, None] * unit[:, None])))
+    blocks = blocks / (unit[:, :, None] * unit[:, None])
+    # |λ|_min ≥ |det| / |λ|_max^(c − 1): eigenvalues are for blocks of which this leaves it open.
+    norm = np.linalg.norm(blocks, axis=(1, 2))
+    bound = np.abs(np.linalg.det(blocks)) / np.maximum(norm, 1.0) ** (blocks.shape[1] - 1)
+    if bound.min() > 10 * _SINGULAR * max(float(norm.max()), 1.0):
+        return np.zeros(0, dtype=np.int64)
+    sizes = np.abs(np.linalg.eigvalsh(blocks))
     slack = sizes.min(axis=1) <= _SINGULAR * max(float(sizes.max()), 1.0)
     return operator.active[operator.own[slack]]
 

@@ -271,6 +271,34 @@ def test_prescribed_particles_are_no_unknowns():
     assert operator.directed_bonds == 24 * operator.bonds.family.size
 
 
+@pytest.mark.parametrize("surface", ["none", "volume"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_an_operator_made_from_the_one_before_has_the_bits_of_a_fresh_one(kind, surface):
+    """Bonds break in turns, particles get prescribed whole: what is shared must be the same."""
+    rng = np.random.default_rng(3)
+    mask = np.ones((13, 17), dtype=bool)
+    mask[5:7, 3:9] = False
+    now = body(mask, kind, surface=surface)
+    prescribed = free(kind, now.bonds)
+    # The first row in one component only: identity rows.
+    prescribed[0, :17] = True
+    now = BondOperator(now.bonds, now.moduli, prescribed)
+    bonds = now.bonds
+    half = bonds.family.size // 2
+    for turn in range(4):
+        there = np.argwhere(np.stack([bonds.strength(o) for o in range(half)]) > 0)
+        offsets, origins = there[rng.permutation(len(there))[:30]].T
+        bonds = bonds.breaking(offsets, origins)
+        if turn == 2:
+            prescribed[:, rng.permutation(bonds.lattice.count)[:9]] = True
+        now = BondOperator(bonds, now.moduli, prescribed, now)
+        fresh = BondOperator(bonds, now.moduli, prescribed)
+        np.testing.assert_array_equal(now.diagonal, fresh.diagonal)
+        np.testing.assert_array_equal(now.segments, fresh.segments)
+        x = rng.standard_normal(now.shape[0])
+        np.testing.assert_array_equal(now @ x, fresh @ x)
+
+
 def test_wrong_mask():
     bonds = body(np.ones((3, 3), bool), "elastic").bonds
     moduli = random_moduli(bonds.family, "conductive", 0)

@@ -19,8 +19,11 @@ from solver import (
     recovery,
     rectangle,
 )
+from solver.bonds import Bonds
 from solver.geometry import Lattice
+from solver.operators import BondOperator
 from solver.operators.assembled import to_csr
+from solver.problem.mechanisms import slack_particles
 
 Broken = Callable[[Lattice, Family], np.ndarray]
 
@@ -123,6 +126,26 @@ def test_random_damage_agrees_with_a_direct_solve() -> None:
     exact = np.linalg.solve(to_csr(problem.operator).toarray(), problem.right_hand_side())
     free = problem.operator.active
     assert np.allclose(solution.unknowns[:, free].ravel(), exact, rtol=0, atol=1e-12)
+
+
+def test_slack_particles_are_those_with_an_eigenvalue_of_zero() -> None:
+    """Most bodies are told sound by determinants alone: the rule stays the eigenvalues'."""
+    seen = 0
+    sound = _scene().discretise()
+    family, nothing = sound.family, np.zeros_like(sound.prescribed)
+    whole = Bonds(sound.lattice, family)
+    there = np.stack([whole.strength(o) for o in range(family.size // 2)]) > 0
+    for seed in range(9):
+        broken = np.random.default_rng(seed).random(there.shape) < (0.3, 0.6, 0.9)[seed % 3]
+        bonds = whole.breaking(*np.nonzero(broken & there))
+        operator = BondOperator(bonds, sound.moduli, nothing)
+        scale = np.sqrt(np.abs(np.einsum("pii->pi", operator.bulk_blocks)))[operator.phase]
+        blocks = operator.block_diagonal / (scale[:, :, None] * scale[:, None])
+        least = np.abs(np.linalg.eigvalsh(blocks)).min(axis=1)
+        wanted = operator.active[least < 1e-9]
+        np.testing.assert_array_equal(slack_particles(operator), wanted)
+        seen += len(wanted) > 0
+    assert 0 < seen < 9
 
 
 def test_a_load_on_a_loose_part_is_refused() -> None:
