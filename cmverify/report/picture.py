@@ -35,9 +35,14 @@ class Picture:
     ) -> Picture:
         """A matplotlib figure, the same bytes for the same figure."""
         import matplotlib
+        from matplotlib.text import Text
 
-        from cmverify.report import style
+        from cmverify.report import style, wording
 
+        for text in figure.findobj(Text):
+            assert isinstance(text, Text)
+            if "$" in text.get_text():
+                text.set_text(wording.drawn(text.get_text()))
         buffer = io.BytesIO()
         # What is made while drawing, ticks and ids, follows the style too.
         with matplotlib.rc_context(style.RC):

@@ -59,9 +59,36 @@ def heading(name: str) -> str:
     return name[:1].upper() + name[1:]
 
 
+_GREEK = {
+    "alpha": "α", "kappa": "κ", "lambda": "λ", "mu": "µ", "omega": "ω", "phi": "φ", "sigma": "σ",
+    "varphi": "φ", "delta": "δ", "Delta": "Δ", "mathrm": "",
+}  # fmt: skip
+_BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+_ABOVE = str.maketrans("0123456789-*", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻*")
+
+
 def mathtext(label: str) -> str:
-    """Plain Unicode for the little mathtext that labels use."""
-    text = label.replace("$", "").replace("\\sigma", "σ").replace("{", "").replace("}", "")
-    for index, sub in (("_11", "₁₁"), ("_22", "₂₂"), ("_12", "₁₂"), ("_1", "₁"), ("_2", "₂")):
-        text = text.replace(index, sub)
-    return text
+    """Plain Unicode for the mathtext that labels use, as far as there is any.
+
+    Examples
+    --------
+    >>> mathtext("$u_{22}$ of $10^{-3}$"), mathtext("$u^*$ (mm)"), mathtext("$w_c$")
+    ('u₂₂ of 10⁻³', 'u* (mm)', 'w_c')
+    """
+    return re.sub(r"\$([^$]*)\$", lambda math: _spelt(math[1]), label)
+
+
+def drawn(label: str) -> str:
+    """A label as figures take it: plain Unicode where that says all, which renders sooner."""
+    plain = mathtext(label)
+    return label if re.search(r"[\\_^{}$]", plain) else plain
+
+
+def _spelt(math: str) -> str:
+    text = re.sub(
+        r"\\([A-Za-z]+)(?![A-Za-z]) ?", lambda found: _GREEK.get(found[1], found[0]), math
+    )
+    text = text.replace("\\,", "\u202f")
+    text = re.sub(r"_(?:(\d)|\{(\d+)\})", lambda n: (n[1] or n[2]).translate(_BELOW), text)
+    text = re.sub(r"\^(?:([\d*])|\{(-?\d+)\})", lambda n: (n[1] or n[2]).translate(_ABOVE), text)
+    return text.replace("{", "").replace("}", "")

@@ -28,6 +28,14 @@ def test_text_stays_text():
     assert "sans-serif" in content  # where a reader's machine has no DejaVu
 
 
+def test_symbols_are_plain_where_unicode_has_them():
+    figure = line()
+    figure.axes[0].set_title(r"$w_c\,\delta^3$ at $x_1$")  # no c stands below a line: typeset
+    content = Picture.drawn("f", "svg", figure, "", "").content.decode()
+    assert "σ₂₂" in content
+    assert "tspan" in content
+
+
 def test_few_colours_are_kept_exactly():
     pixels = np.random.default_rng(0).integers(0, 4, (40, 50, 3)).astype(np.uint8) * 60
     image = in_palette(pixels)

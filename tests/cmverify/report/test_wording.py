@@ -5,7 +5,7 @@ import re
 import pytest
 
 from cmverify.cases import registry
-from cmverify.report.wording import counted, heading, number, tidy
+from cmverify.report.wording import counted, drawn, heading, mathtext, number, tidy
 
 
 @pytest.mark.parametrize(
@@ -38,3 +38,19 @@ def test_exponents_and_counts():
     assert tidy("order 1e+10 … 1e-12") == "order 1e10 … 1e-12"
     assert counted(1, "check") == "1 check"
     assert counted(1200, "worker process", "worker processes") == "1\u202f200 worker processes"
+
+
+@pytest.mark.parametrize(
+    ("label", "plain", "shown"),
+    [
+        ("Stress $\\sigma_{22}$ (K/√a)", "Stress σ₂₂ (K/√a)", "Stress σ₂₂ (K/√a)"),
+        ("$\\Delta\\phi/\\Delta\\phi_0$", "Δφ/Δφ₀", "Δφ/Δφ₀"),
+        ("$10^{-3}$ Pa", "10⁻³ Pa", "10⁻³ Pa"),
+        ("$u^*$ (mm)", "u* (mm)", "u* (mm)"),
+        ("$K_\\mathrm{II}$", "K_II", "$K_\\mathrm{II}$"),  # figures set what Unicode lacks
+        ("a_b costs 5 $", "a_b costs 5 $", "a_b costs 5 $"),
+    ],
+)
+def test_mathtext_is_plain_where_unicode_has_it(label, plain, shown):
+    assert mathtext(label) == plain
+    assert drawn(label) == shown
