@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -335,6 +335,9 @@ class Case:
     poses : tuple of Pose
         Its problems as other programs are told them (`cmverify export`), the main one first;
         none if what it shows is no answer to a problem.
+    elements : mapping from a name to a callable
+        Solves a small one of the finite-element problems that judge it and that no method of kind
+        "fem" solves: `cmverify run --cross-check` has another code solve it too.
     """
 
     name: str
@@ -352,6 +355,7 @@ class Case:
     length: str = "a"
     timed: bool = True
     poses: tuple[Pose, ...] = ()
+    elements: Mapping[str, Callable[[], Any]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         names = [method.name for method in self.methods]

@@ -158,6 +158,9 @@ def run(
     timeout: Annotated[float, typer.Option(help="Seconds for a single measurement.")] = 3600.0,
     json: Annotated[Path | None, typer.Option(help="Write all numbers to this file.")] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace that file.")] = False,
+    cross_check: Annotated[
+        bool, typer.Option("--cross-check", help="Have FEniCSx solve the finite elements too.")
+    ] = False,
 ) -> None:
     """Run cases, judge them and write the report. Exit code 0 only if every check holds."""
     from cmverify.run import folder
@@ -173,7 +176,7 @@ def run(
             folder.check_file(json)
         folder.require_own(out)
         with folder.claimed(out):
-            _run(cases, names, level, jobs, out, resume, timeout, json)
+            _run(cases, names, level, jobs, out, resume, timeout, json, cross_check)
     except folder.FolderError as error:
         refuse(str(error))
 
@@ -187,6 +190,7 @@ def _run(
     resume: bool,
     timeout: float,
     json: Path | None,
+    cross_check: bool,
 ) -> NoReturn:
     """Measure, judge and report, in a folder that is this run's own."""
     import datetime
@@ -197,7 +201,9 @@ def _run(
     from cmverify.run import environment, runner
     from cmverify.run.progress import LiveProgress
     from cmverify.run.threads import available_cores, threads_per_worker
+    from cmverify.studies import crosscheck_command
 
+    fenicsx = crosscheck_command.found() if cross_check else None
     jobs = jobs or available_cores()
     screen = console()
     started, clock = datetime.datetime.now().astimezone(), time.perf_counter()
@@ -235,8 +241,15 @@ def _run(
         interrupted(f"{error.strerror or error}; what is finished is kept; {go_on}")
     judged = summary.summarise(cases, records, info)
     terminal.print_verdicts(screen, judged)
+    agreed = True
+    if cross_check:
+        try:
+            other = crosscheck_command.crosschecked(cases, level, out, fenicsx, screen)
+        except KeyboardInterrupt:
+            interrupted(f"the results are kept; render them with: cmverify report --out {out}")
+        agreed = not other.failed
     _write(_beside(judged, info, out, screen), info, out, json, screen)
-    raise typer.Exit(0 if summary.all_passed(judged) else 1)
+    raise typer.Exit(0 if summary.all_passed(judged) and agreed else 1)
 
 
 @app.command()

@@ -12,6 +12,8 @@ PACKAGES = ("solver", "cmverify")
 #: Modules whose tests have another name, and which. A new module needs a test of its own name,
 #: or one of its room's; nothing is to be added here without a reason.
 ELSEWHERE = {
+    "cmverify/studies/crosscheck_command.py": "tests/cmverify/studies/test_crosscheck.py",
+    "cmverify/report/crosscheck_chapter.py": "tests/cmverify/studies/test_crosscheck.py",
     "cmverify/studies/precision_command.py": "tests/cmverify/studies/test_precision.py",
     # Aliases of types, and classes without a body.
     "solver/arrays.py": "tests/test_architecture.py",

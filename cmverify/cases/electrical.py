@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from cmverify.cases.surfaces.bodies import at_points, nearest
 from cmverify.faults.changes import argument, result, scaled, times
 from cmverify.faults.fault import Fault
 from cmverify.judge.norms import relative_l2, worst
+
+if TYPE_CHECKING:
+    from references.fem.leads import LeadSolution
 
 ALONG, ACROSS = 170.0, 540.0  # Ω m
 RATIOS = (0.2, 0.4, 0.6, 0.8)
@@ -115,6 +118,17 @@ def cracked(strip: Strip, n: int) -> Measurement:
 # ---- leads ------------------------------------------------------------------------------
 
 
+def plate_by_elements(held: bool, size: float) -> LeadSolution:
+    """The plate between its leads by quadratic elements of this size."""
+    from references.fem.leads import Lead, plate_between_leads
+
+    if held:
+        leads = [Lead(*FED, potential=VOLTAGE), Lead(*DRAINED, potential=0.0)]
+    else:
+        leads = [Lead(*FED, current=CURRENT), Lead(*DRAINED, current=-CURRENT)]
+    return plate_between_leads(*PLATE, size, bone().matrix, leads)
+
+
 @cache
 def reference(held: bool) -> tuple[float, float]:
     """Potential between the probes and current of the lead that is drained, by finite elements.
@@ -122,15 +136,9 @@ def reference(held: bool) -> tuple[float, float]:
     With held leads, at whose corners the gradient grows as r^(-1/3), what two meshes leave at
     their order of 4/3 is taken off.
     """
-    from references.fem.leads import Lead, plate_between_leads
-
     found = []
     for size in (0.025, 0.0125) if held else (0.025,):
-        if held:
-            leads = [Lead(*FED, potential=VOLTAGE), Lead(*DRAINED, potential=0.0)]
-        else:
-            leads = [Lead(*FED, current=CURRENT), Lead(*DRAINED, current=-CURRENT)]
-        plate = plate_between_leads(*PLATE, size, bone().matrix, leads)
+        plate = plate_by_elements(held, size)
         up, down = plate.at(PROBES)
         found.append((up - down, plate.heat / VOLTAGE if held else CURRENT))
     limit = np.array(found[-1])
@@ -405,6 +413,10 @@ CASES = (
             "Joule heat": "heat of a uniform field",
             "drained": "current of the held particles beside what is fed in",
             "refused": "whether a plate without a potential is refused as a floating conductor",
+        },
+        elements={
+            "fed leads": partial(plate_by_elements, False, 0.05),
+            "held leads": partial(plate_by_elements, True, 0.05),
         },
         primary="drop",
         featured="bond/currents",

@@ -324,6 +324,10 @@ CASES = (
             "change across": "the same across it",
             "change": "the larger of the two",
         },
+        elements={
+            **adapters.stored("strained-plate-isotropic", degrees=[0.0], size=0.06),
+            **adapters.stored("strained-plate-bone", degrees=[90.0], size=0.06),
+        },
         primary="along",
         featured="bond/uniform strain",
         length="m, or the hole's radius",

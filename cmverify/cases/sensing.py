@@ -33,6 +33,7 @@ from cmverify.case import (
     Stage,
     Stages,
 )
+from cmverify.cases.common import adapters
 from cmverify.cases.experiments import bone
 from cmverify.cases.experiments.bone import RATIO, TIP, WIDTH, Specimen
 from cmverify.faults.changes import result
@@ -348,6 +349,7 @@ CASES = (
             "cost": "CPU time of the sensor over that of the mechanics (shown)",
             "fallen": "largest fall of Δφ/Δφ₀ from one reading to the next",
         },
+        elements=adapters.stored("bone-leads", degrees=[45.0], tips=[0], elements=1),
         primary="relative drop",
         featured=_STRAIGHT.name,
         length="1.5 mm",

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from cmverify.case import Array, Case, Check, Field, FieldSet, Level, Measurement, Method, OrderBand
+from cmverify.cases.common import adapters
 from cmverify.cases.common.warm import conduction_in_time
 from cmverify.judge.norms import relative_l2
 
@@ -301,6 +302,7 @@ CASES = (
             Check("bond/extrapolated", "balance", {20: 1e-10}, source=BALANCE, exact=True),
         ),
         quantities=QUANTITIES,
+        elements=adapters.stored("cracked-square-cools", size=0.05, steps=40, grids=[20]),
         primary="temperature",
         featured="bond/extrapolated",
         length="L",

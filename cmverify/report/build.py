@@ -12,7 +12,14 @@ from typing import Any
 
 from cmverify.case import Case, LinePlot, Measurement, nothing_to_compile
 from cmverify.judge import precision
-from cmverify.report import opening, pages, precision_chapter, previous, validity
+from cmverify.report import (
+    crosscheck_chapter,
+    opening,
+    pages,
+    precision_chapter,
+    previous,
+    validity,
+)
 from cmverify.report.numbers import Results
 from cmverify.report.picture import Picture
 from cmverify.report.summary import CaseResult, Row, RunInfo, as_json, table, tally
@@ -63,6 +70,8 @@ def build(summary: Sequence[CaseResult], info: RunInfo, folder: Path) -> Path:
             methods=sorted({name for r in summary for name in r.outcomes}),
             before=_before(summary, info, folder),
             **_precision(folder),
+            **_crosscheck(folder),
+            cases={result.case.name for result in summary},
             validity=covered if (covered := validity.matrix(summary)).covered else None,
             beside=[(name, text) for name, text in BESIDE if (folder / name).is_file()],
         )
@@ -86,6 +95,15 @@ def _precision(folder: Path) -> dict[str, Any]:
     titles = {name: case.title for name, case in cases.items()}
     errors = {name: case.quantities[case.primary] for name, case in cases.items()}
     return {"precision": study, "precise": precision_chapter.sections(study, titles, errors)}
+
+
+def _crosscheck(folder: Path) -> dict[str, Any]:
+    """The cross-check in a folder (or why it cannot be read, or None), and its column."""
+    try:
+        found = crosscheck_chapter.read(folder)
+    except ValueError as error:
+        return {"crosscheck": str(error), "fenicsx": {}}
+    return {"crosscheck": found, "fenicsx": crosscheck_chapter.column(found) if found else {}}
 
 
 def _before(summary: Sequence[CaseResult], info: RunInfo, folder: Path) -> Any:
@@ -131,7 +149,7 @@ def _draw_in_processes(
 
 def _without_functions(case: Case) -> Case:
     methods = tuple(replace(m, run=_not_here, warm_up=nothing_to_compile) for m in case.methods)
-    return replace(case, methods=methods)
+    return replace(case, methods=methods, elements={})
 
 
 def _not_here(resolution: int) -> Measurement:

@@ -18,6 +18,7 @@ from references.fem.evaluation import (
     dirichlet_points,
     to_skfem,
 )
+from references.fem.listening import listened
 from references.fem.mesh import Mesh
 from references.fem.restraint import require_temperature
 from references.linear import solve_with_prescribed
@@ -53,6 +54,7 @@ class ConductionSolution(Field):
         return flux
 
 
+@listened
 def steady_conduction(
     mesh: Mesh,
     conductivity: ArrayLike,

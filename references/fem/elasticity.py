@@ -18,6 +18,7 @@ from references.fem.evaluation import (
     dirichlet_points,
     to_skfem,
 )
+from references.fem.listening import listened
 from references.fem.mesh import Mesh
 from references.fem.restraint import require_held, rigid_motions
 from references.linear import solve_with_prescribed
@@ -94,6 +95,7 @@ def component_dofs(basis: skfem.Basis) -> NDArray[np.int64]:
     return np.vstack(rows)
 
 
+@listened
 def solve_elasticity(
     mesh: Mesh,
     voigt: ArrayLike,
@@ -225,8 +227,14 @@ def _pin(
         raise ValueError("nothing holds the body and its loads are not in equilibrium")
     # what is left comes from chords in place of curves: spread it over all nodes
     load[dofs] -= (flat @ np.linalg.solve(flat.T @ flat, resultant)).reshape(-1, 2)
+    left, far, across = pins(nodes)
+    values[dofs[left]] = 0.0
+    values[dofs[far, across]] = 0.0
+
+
+def pins(nodes: NDArray[np.float64]) -> tuple[int, int, int]:
+    """A node to hold, another one, and its component to hold: a free body's rigid motion."""
     left = int(np.argmin(nodes[:, 0]))
     far = int(np.argmax(np.hypot(*(nodes - nodes[left]).T)))
     across = 0 if abs(nodes[far, 1] - nodes[left, 1]) > abs(nodes[far, 0] - nodes[left, 0]) else 1
-    values[dofs[left]] = 0.0
-    values[dofs[far, across]] = 0.0
+    return left, far, across

@@ -15,6 +15,7 @@ from skfem.helpers import dot, grad
 from references.analytic.conduction import checked_conductivity
 from references.fem.conduction import ConductionSolution
 from references.fem.evaluation import ELEMENTS, check_order, to_skfem
+from references.fem.listening import listened
 from references.fem.mesh import Mesh
 from references.fem.restraint import require_temperature
 from references.fem.slit import boundary_edges, split_along
@@ -68,6 +69,7 @@ class LeadSolution(ConductionSolution):
     heat: float = 0.0
 
 
+@listened
 def plate_between_leads(
     width: float,
     height: float,

@@ -10,6 +10,7 @@ from references.analytic.voigt import checked_voigt
 from references.eigen import elastic_part, smallest_eigenpairs
 from references.fem.elasticity import component_dofs, elastic_forms
 from references.fem.evaluation import Field, check_order
+from references.fem.listening import listened
 from references.fem.mesh import Mesh, rectangle
 from references.fem.restraint import rigid_motions
 
@@ -41,6 +42,7 @@ class Modes:
         return np.moveaxis(self._field.at(points).reshape(-1, len(self.shapes), 2), 0, 1)
 
 
+@listened
 def in_plane_modes(
     mesh: Mesh,
     voigt: ArrayLike,

@@ -10,6 +10,7 @@ from skfem.helpers import dot, grad
 from references.fem.conduction import ConductionSolution
 from references.fem.elasticity import ElasticSolution, component_dofs, strain
 from references.fem.evaluation import ELEMENTS, to_skfem
+from references.fem.listening import listened
 from references.fem.restraint import require_temperature
 from references.linear import solve_with_prescribed
 
@@ -17,6 +18,7 @@ from references.linear import solve_with_prescribed
 _QUADRATURE = 6
 
 
+@listened
 def strained_conduction(
     elastic: ElasticSolution,
     conductivity: Callable[[NDArray[np.float64]], NDArray[np.float64]],

@@ -18,6 +18,7 @@ from references.fem.evaluation import (
     dirichlet_points,
     to_skfem,
 )
+from references.fem.listening import listened
 from references.fem.mesh import Mesh
 from references.linear import factorise
 
@@ -50,6 +51,7 @@ class TransientSolution:
         return np.stack([f.at(where) for f in self.fields])
 
 
+@listened
 def transient_conduction(
     mesh: Mesh,
     conductivity: ArrayLike,

@@ -6,7 +6,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -19,8 +19,16 @@ from references.analytic.conduction import checked_conductivity
 from references.analytic.voigt import checked_voigt
 from references.eigen import elastic_part
 from references.fem.conduction import Scalar, evaluate
-from references.fem.elasticity import Vector, evaluate_vector
+from references.fem.elasticity import (
+    ElasticSolution,
+    Vector,
+    component_dofs,
+    evaluate_vector,
+    pins,
+    strain,
+)
 from references.fem.evaluation import ELEMENTS, check_order, dirichlet_points, to_skfem
+from references.fem.leads import Lead
 from references.fem.mesh import Mesh
 from references.fem.restraint import require_held, require_temperature, rigid_motions
 
@@ -176,7 +184,7 @@ def run(
 
 
 @dataclass(frozen=True)
-class _Numbering:
+class Numbering:
     """Nodes as scikit-fem numbers them, so that answers compare node by node."""
 
     nodes: NDArray[np.float64]
@@ -185,7 +193,7 @@ class _Numbering:
     problem: dict[str, ArrayLike]
 
 
-def _number(mesh: Mesh, order: int) -> _Numbering:
+def number(mesh: Mesh, order: int) -> Numbering:
     check_order(order)
     triangulation, facets = to_skfem(mesh)
     basis = skfem.Basis(triangulation, ELEMENTS[order]())
@@ -199,7 +207,7 @@ def _number(mesh: Mesh, order: int) -> _Numbering:
         "tractions": 0,
     }
     on = {name: basis.get_dofs(found).flatten() for name, found in facets.items()}
-    return _Numbering(nodes, basis.element_dofs, on, problem)
+    return Numbering(nodes, basis.element_dofs, on, problem)
 
 
 def steady_conduction(
@@ -214,7 +222,7 @@ def steady_conduction(
 
     The source is interpolated at the nodes: exact for polynomials up to the elements' order.
     """
-    numbering = _number(mesh, order)
+    numbering = number(mesh, order)
     x, y = dirichlet_points(mesh, numbering.nodes, numbering.element_nodes).T
     prescribed = np.full((len(x), 1), np.nan)
     if isinstance(boundary_temperature, Mapping):
@@ -239,7 +247,7 @@ def steady_conduction(
 def solve_elasticity(
     mesh: Mesh,
     voigt: ArrayLike,
-    displacement: Vector | Mapping[str, Vector],
+    displacement: Vector | Mapping[str, Vector] | None = None,
     tractions: Mapping[str, Vector] | None = None,
     body_force: Vector | None = None,
     order: int = 2,
@@ -248,15 +256,19 @@ def solve_elasticity(
     """As :func:`references.fem.elasticity.solve_elasticity`; nodal displacements (n, 2).
 
     Forces and tractions are interpolated at the nodes: exact for polynomials up to the elements'
-    order.
+    order. Loads on a body that nothing holds must balance but for rounding.
     """
-    numbering = _number(mesh, order)
+    numbering = number(mesh, order)
     x, y = dirichlet_points(mesh, numbering.nodes, numbering.element_nodes).T
     prescribed = np.full((len(x), 2), np.nan)
+    given: dict[str, Vector] = {}
     if isinstance(displacement, Mapping):
-        given: dict[str, Vector] = dict(displacement)
-    else:
+        given = dict(displacement)
+    elif displacement is not None:
         given = dict.fromkeys(mesh.outer, displacement)
+    if not given:
+        left, far, across = pins(numbering.nodes)
+        prescribed[left] = prescribed[far, across] = 0.0
     for name, wanted in given.items():
         mesh.nodes(name)
         held = numbering.on[name]
@@ -279,6 +291,78 @@ def solve_elasticity(
     return run(problem, processes)["values"]
 
 
+def between_leads(
+    mesh: Mesh,
+    conductivity: ArrayLike,
+    leads: Sequence[Lead],
+    order: int = 2,
+    processes: int = 1,
+) -> NDArray[np.float64]:
+    """As :func:`references.fem.leads.plate_between_leads` on its mesh; nodal potentials (n,)."""
+    numbering = number(mesh, order)
+    x, y = numbering.nodes.T
+    prescribed = np.full((len(x), 1), np.nan)
+    feed = np.zeros((len(mesh.triangles), 1))
+    margin, centres = 1e-6 * mesh.size, mesh.points[mesh.triangles].mean(axis=1).T
+    for lead in leads:
+        if lead.potential is not None:
+            prescribed[lead.holds(x, y, margin)] = lead.potential
+        if lead.current is not None:
+            inside = lead.holds(centres[0], centres[1], 0.0)
+            feed[inside] += lead.current / ((lead.x1 - lead.x0) * (lead.y1 - lead.y0))
+    if np.isnan(prescribed).all():
+        prescribed[np.argmin(x + y)] = 0.0
+    require_temperature(numbering.nodes, numbering.element_nodes, ~np.isnan(prescribed[:, 0]))
+    problem = {
+        **numbering.problem,
+        "physics": "conduction",
+        "tensor": checked_conductivity(conductivity),
+        "prescribed": prescribed,
+        "element_source": feed,
+    }
+    return run(problem, processes)["values"][:, 0]
+
+
+def strained_conduction(
+    elastic: ElasticSolution,
+    conductivity: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    inflow: Mapping[str, float],
+    processes: int = 1,
+) -> NDArray[np.float64]:
+    """As :func:`references.fem.piezoresistive.strained_conduction`; nodal potentials (n,).
+
+    The conductivity is taken at the nodes of each triangle and is a polynomial between them.
+    """
+    mesh, order = elastic.mesh, elastic.order
+    numbering = number(mesh, order)
+    corners = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    local = np.hstack([corners, (corners + np.roll(corners, -1, axis=1)) / 2])
+    local = local[:, : len(numbering.element_nodes)]
+    triangulation, _ = to_skfem(mesh)
+    motion = skfem.Basis(
+        triangulation,
+        skfem.ElementVector(ELEMENTS[order]()),
+        quadrature=(local, np.full(local.shape[1], 0.5 / local.shape[1])),
+    )
+    displacement = np.zeros(motion.N)
+    displacement[component_dofs(motion)] = elastic.values
+    tensor = np.moveaxis(conductivity(strain(motion.interpolate(displacement))), (0, 1), (2, 3))
+    prescribed = np.full((len(numbering.nodes), 1), np.nan)
+    prescribed[np.argmin(numbering.nodes.sum(axis=1))] = 0.0
+    problem = {
+        **numbering.problem,
+        "physics": "conduction",
+        "element_tensor": tensor,
+        "prescribed": prescribed,
+        "tractions": len(inflow),
+    }
+    for k, (name, density) in enumerate(inflow.items()):
+        mesh.nodes(name)
+        problem[f"traction_edges_{k}"] = mesh.boundaries[name]
+        problem[f"traction_values_{k}"] = np.full((len(numbering.nodes), 1), density)
+    return run(problem, processes)["values"][:, 0]
+
+
 def transient_conduction(
     mesh: Mesh,
     conductivity: ArrayLike,
@@ -293,7 +377,7 @@ def transient_conduction(
 
     Nodal temperatures (n,) at the end.
     """
-    numbering = _number(mesh, order)
+    numbering = number(mesh, order)
     x, y = dirichlet_points(mesh, numbering.nodes, numbering.element_nodes).T
     problem = {
         **numbering.problem,
@@ -318,7 +402,7 @@ def in_plane_frequencies(
     processes: int = 1,
 ) -> NDArray[np.float64]:
     """As :func:`references.fem.modes.in_plane_modes`; circular frequencies (count,), rad/s."""
-    numbering = _number(mesh, order)
+    numbering = number(mesh, order)
     prescribed = np.full((len(numbering.nodes), 2), np.nan)
     for name in clamped:
         mesh.nodes(name)

@@ -20,6 +20,11 @@ Keys of the problem (n nodes, c components: 1 in conduction, else 2):
 ``tensor``                 (2, 2) or (3, 3)    conductivity, W/(m K), or stiffness (11, 22, 12), Pa
 ``prescribed``             (n, c)              temperature, K, or displacement, m; NaN where free
 ``source``                 (n, c), optional    nodal source, W/m³, or body force, N/m³
+``element_tensor``         (M, k, d, d)        in place of ``tensor``, where it varies (static
+                                               problems): at each triangle's k nodes, or k = 1
+``element_source``         (M, 1), optional    source that is even in each triangle, W/m³
+``initial_strain``         (M, 1, 3)           of each triangle without stress (11, 22, 2·12),
+                                               optional
 ``tractions``              int                 number of loaded boundaries (static problems)
 ``traction_edges_k``       (e, 2) int          edges of the k-th one, pairs of vertices
 ``traction_values_k``      (n, c)              its nodal tractions, Pa; used on those edges only
@@ -126,6 +131,33 @@ class Nodes:
         return values
 
 
+def element_wise(mesh, nodes, element_nodes, values):  # type: ignore[no-untyped-def]
+    """A function that may jump between triangles, from its values (M, k, ...) there.
+
+    k is 1 for what is even in each, else the number of the triangle's nodes.
+    """
+    degree, shape = {1: 0, 3: 1, 6: 2}[values.shape[1]], values.shape[2:]
+    if MODERN:
+        space = fem.functionspace(mesh, ("DG", degree, shape))
+    else:
+        family = {0: fem.FunctionSpace, 1: fem.VectorFunctionSpace, 2: fem.TensorFunctionSpace}
+        space = family[len(shape)](mesh, ("DG", degree))
+    index_map = mesh.topology.index_map(2)
+    cells = index_map.size_local + index_map.num_ghosts
+    listed = space.dofmap.list
+    dofs = np.asarray(listed.array if hasattr(listed, "array") else listed).reshape(cells, -1)
+    own = values[np.asarray(mesh.topology.original_cell_index)[:cells]]
+    if degree:
+        ours = nodes[element_nodes[np.asarray(mesh.topology.original_cell_index)[:cells]]]
+        theirs = space.tabulate_dof_coordinates()[:, :2][dofs]
+        match = np.linalg.norm(theirs[:, :, None] - ours[:, None], axis=-1).argmin(axis=2)
+        own = own[np.arange(cells)[:, None], match]
+    function = fem.Function(space)
+    array = function.x.array.reshape(-1, max(int(np.prod(shape)), 1))
+    array[dofs] = own.reshape(*dofs.shape, -1)
+    return function
+
+
 def locate_facets(mesh, edges):  # type: ignore[no-untyped-def]
     """dolfinx's facets for pairs (k, 2) of the problem's vertices, among this rank's."""
     topology = mesh.topology
@@ -177,10 +209,18 @@ def strain(u):  # type: ignore[no-untyped-def]
     return ufl.as_vector([g[0, 0], g[1, 1], g[0, 1] + g[1, 0]])
 
 
+def tensor_of(problem, mesh):  # type: ignore[no-untyped-def]
+    """Conductivity or stiffness: one for all, or one that varies."""
+    if "element_tensor" in problem:
+        place = (problem["nodes"], problem["element_nodes"])
+        return element_wise(mesh, *place, problem["element_tensor"])
+    return fem.Constant(mesh, np.asarray(problem["tensor"], dtype=PETSc.ScalarType))
+
+
 def energy(problem, mesh, space):  # type: ignore[no-untyped-def]
     """The stiffness form of the problem's physics."""
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
-    tensor = fem.Constant(mesh, np.asarray(problem["tensor"], dtype=PETSc.ScalarType))
+    tensor = tensor_of(problem, mesh)
     if str(problem["physics"]) in ("conduction", "transient"):
         return ufl.inner(ufl.dot(tensor, ufl.grad(u)), ufl.grad(v)) * ufl.dx
     return ufl.inner(ufl.dot(tensor, strain(u)), strain(v)) * ufl.dx
@@ -218,6 +258,12 @@ def solve_static(problem, mesh, space, nodes):  # type: ignore[no-untyped-def]
         source = fem.Function(space)
         nodes.fill(source, problem["source"])
         right += ufl.inner(source, v) * ufl.dx
+    place = (mesh, problem["nodes"], problem["element_nodes"])
+    if "element_source" in problem:
+        right += ufl.inner(element_wise(*place, problem["element_source"]), v) * ufl.dx
+    if "initial_strain" in problem:
+        initial = element_wise(*place, problem["initial_strain"])
+        right += ufl.inner(ufl.dot(tensor_of(problem, mesh), initial), strain(v)) * ufl.dx
     number = int(problem["tractions"])
     if number:
         edges = [locate_facets(mesh, problem[f"traction_edges_{k}"]) for k in range(number)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -35,6 +36,28 @@ def free_points(n: int) -> Array:
     """The centres of `disc_lattice` that no layer of 5.5 cells prescribes."""
     points = disc_lattice(n)
     return points[np.hypot(*points.T) < 1.0 - LAYER_CELLS / n]
+
+
+@dataclass(frozen=True)
+class Stored:
+    """Solves a stored reference's finite elements anew, with some of its arguments changed.
+
+    For `Case.elements`: small meshes, and few of the reference's rows.
+    """
+
+    name: str
+    changes: dict[str, Any]
+
+    def __call__(self) -> None:
+        from references.catalogue import catalogue
+
+        reference = catalogue()[self.name]
+        reference.generator(**{**reference.arguments, **self.changes})
+
+
+def stored(name: str, **changes: Any) -> dict[str, Callable[[], Any]]:
+    """A stored reference as an item of `Case.elements`."""
+    return {f"stored {name}": Stored(name, changes)}
 
 
 def row(points: Array, height: float, spacing: float) -> np.ndarray:

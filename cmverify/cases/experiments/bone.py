@@ -58,7 +58,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measurement, Method
-from cmverify.cases.common import warm
+from cmverify.cases.common import adapters, warm
 
 from .running import DESCRIPTIONS, Led, bridging, circle, lead
 
@@ -336,6 +336,10 @@ CASES = (
             "bonds across the crack",
             "bridged": "energy that bonds across the crack's path are yet to take, over G × its "
             "length (shown)",
+        },
+        elements={
+            **adapters.stored("compact-tension-pins", degrees=[45.0], elements=8),
+            **adapters.stored("compact-tension-growth", ratios=[0.44], elements=8),
         },
         primary="stiffness",
         featured=_STRAIGHT.name,

@@ -50,7 +50,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measurement, Method
-from cmverify.cases.common import warm
+from cmverify.cases.common import adapters, warm
 
 from .running import DESCRIPTIONS, Led, circle, lead, uprights
 
@@ -327,6 +327,7 @@ CASES = (
             "through": "u* at which that is within a/2 of the right edge, mm (shown)",
             **DESCRIPTIONS,
         },
+        elements=adapters.stored("notched-plate", size=0.3),
         primary="stiffness",
         featured="rims m=3",
         length="a",

@@ -7,9 +7,9 @@ from functools import partial
 from typing import Any
 
 from cmverify.case import Case, Check, Level, Method
-from cmverify.cases.common import warm
+from cmverify.cases.common import adapters, warm
 from cmverify.cases.kinking.measure import Study, study
-from cmverify.cases.kinking.problem import Kink
+from cmverify.cases.kinking.problem import MATERIALS, Kink
 
 LADDER = {Level.QUICK: (30,), Level.STANDARD: (30, 60), Level.PAPER: (30, 60, 120)}
 #: One thing changed at a time, at a/60; m is changed with the number of bonds that break together.
@@ -95,6 +95,7 @@ def _case(material: str, name: str, shows: str) -> Case:
             *straight,
         ),
         quantities=QUANTITIES,
+        elements=adapters.stored(f"kinks-{MATERIALS[material]}", degrees=[30.0]),
         primary="rms",
         featured=main,
         timed=False,

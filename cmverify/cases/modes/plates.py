@@ -20,7 +20,7 @@ from cmverify.case import (
     OrderBand,
 )
 from cmverify.cases.common import warm
-from cmverify.cases.common.adapters import stopwatch
+from cmverify.cases.common.adapters import Stored, stopwatch
 from cmverify.cases.common.materials import isotropic, orthotropic, turned
 from cmverify.cases.modes.pairing import clusters, pair
 from cmverify.exchange.statement import LARGEST, Pose, Statement, Target
@@ -281,6 +281,12 @@ CASES = (
             ),
         ),
         quantities=QUANTITIES,
+        elements={
+            f"stored free-plates, {feature or 'whole'}": Stored(
+                "free-plates", {"numbers": [number], "elements": 12}
+            )
+            for feature, number in (("", 3), ("hole", 8), ("crack", 9))
+        },
         primary="frequency",
         featured="bond/mild 30°",
         length="L",

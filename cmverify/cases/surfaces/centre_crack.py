@@ -158,6 +158,9 @@ def _case(material: str) -> Case:
             ),
         ),
         quantities=quantities,
+        elements=adapters.stored(
+            "stress-intensity-centre", materials=[material], ratios=[0.4], elements=8
+        ),
         primary="K",
         featured="bond/extrapolated",
         length="W",

@@ -227,6 +227,7 @@ CASES = (
             "the stored displacement gives, where the section meets the hole",
             "iterations": "Krylov iterations to a residual of 1e-11",
         },
+        elements=adapters.stored("plate-with-hole-bone", size=0.06),
         primary="edge displacement",
         featured="bond/extrapolated",
         length="radius",

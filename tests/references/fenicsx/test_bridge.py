@@ -9,10 +9,13 @@ from numpy.typing import NDArray
 
 from references.fem.conduction import steady_conduction
 from references.fem.elasticity import solve_elasticity
+from references.fem.leads import Lead, plate_between_leads
+from references.fem.listening import listening
 from references.fem.mesh import crack_tip_disc, disc, rectangle
 from references.fem.modes import in_plane_modes
+from references.fem.piezoresistive import strained_conduction
 from references.fem.transient import transient_conduction
-from references.fenicsx import bridge
+from references.fenicsx import again, bridge
 from references.generators_dynamic import plate_mesh
 from references.provenance import load
 
@@ -186,3 +189,40 @@ def test_a_worker_that_fails_says_why() -> None:
     }
     with pytest.raises(bridge.FenicsxError, match="do not coincide"):
         bridge.run(problem)
+
+
+def heard(solve: Any) -> list[again.Second]:
+    ear = again.Beside()
+    with listening(ear):
+        solve()
+    return ear.found
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_leads_of_given_current_or_potential_at_a_slit(held: bool) -> None:
+    ways = [{"potential": 1.0}, {"potential": 0.0}] if held else [{"current": 2.0}, {"current": -2}]
+    leads = [Lead(0.5, 0.1, 0.7, 0.3, **ways[0]), Lead(-0.7, -0.3, -0.5, -0.1, **ways[1])]
+    slit = ((-1.0, 0.0), (0.2, 0.0))
+    (second,) = heard(lambda: plate_between_leads(2, 1, 0.1, D, leads, slit))
+    assert second.difference < 1e-10
+    assert 1e-4 < second.change < 0.05
+
+
+def test_conduction_of_a_strained_body_on_both_meshes() -> None:
+    """Its strains on the finer mesh are those of the elastic problem before it."""
+    mesh = rectangle(2, 1, 0.25, holes=[(0, 0, 0.2)])
+
+    def law(e: NDArray) -> NDArray:
+        eye = np.eye(2).reshape(2, 2, *[1] * (e.ndim - 1))
+        return eye * (1 + 3 * e[0] + e[1] ** 2) + 0 * e[0]
+
+    def solve() -> None:
+        pulled = solve_elasticity(mesh, C, tractions={"left": (-0.1, 0), "right": (0.1, 0)})
+        strained_conduction(pulled, law, {"left": 1.0, "right": -1.0})
+
+    pulled, second = heard(solve)
+    assert pulled.difference < 1e-10
+    # A quadratic law of strains that are linear in each triangle: nothing is lost.
+    assert second.difference < 1e-10
+    assert 1e-6 < second.change < 0.02
+    assert second.finer.mesh is pulled.finer.mesh

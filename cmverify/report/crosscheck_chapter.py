@@ -1,0 +1,100 @@
+"""The chapter on the cross-check by FEniCSx: what `run --cross-check` has left in a folder."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from cmverify.run.results import write_text
+from cmverify.studies.crosscheck import Row
+
+NAME, FORMAT = "crosscheck.json", 1
+
+
+@dataclass(frozen=True)
+class CrossCheck:
+    """Rows with the code that made them.
+
+    Attributes
+    ----------
+    rows : list of Row
+    fenicsx : str
+        Versions and interpreter; empty if there is none.
+    skipped : str
+        How to install FEniCSx, where it was asked for and not found.
+    started : str
+    """
+
+    rows: list[Row]
+    fenicsx: str
+    skipped: str
+    started: str
+
+    @property
+    def failed(self) -> list[Row]:
+        """What does not agree."""
+        return [row for row in self.rows if not row.passed]
+
+    def of(self, case: str) -> list[Row]:
+        """Rows of a case."""
+        return [row for row in self.rows if row.case == case]
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A case's place in the report's column: the largest difference, and whether all agree."""
+
+    passed: bool
+    difference: float | None
+    count: int
+
+
+def column(found: CrossCheck) -> Mapping[str, Cell]:
+    """The column of the table of verdicts, by case."""
+    cells = {}
+    for case in dict.fromkeys(row.case for row in found.rows):
+        own = found.of(case)
+        known = [row.difference for row in own if row.difference is not None]
+        cells[case] = Cell(all(row.passed for row in own), max(known, default=None), len(own))
+    return cells
+
+
+def keeping(new: CrossCheck, folder: Path, cases: Iterable[str]) -> CrossCheck:
+    """A cross-check of some cases with what its folder holds of others."""
+    try:
+        old = read(folder)
+    except ValueError:
+        old = None
+    if old is None:
+        return new
+    own = set(cases)
+    kept = [row for row in old.rows if row.case not in own]
+    return CrossCheck(new.rows + kept, new.fenicsx or old.fenicsx, new.skipped, new.started)
+
+
+def write(found: CrossCheck, folder: Path) -> None:
+    """Write crosscheck.json."""
+    data = {"format": FORMAT, **asdict(found)}
+    write_text(folder / NAME, json.dumps(data, indent=1, ensure_ascii=False))
+
+
+def read(folder: Path) -> CrossCheck | None:
+    """The cross-check of a folder; None if there is none.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read.
+    """
+    path = folder / NAME
+    if not path.is_file():
+        return None
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        if data.pop("format") != FORMAT:
+            raise ValueError(f"it is not of format {FORMAT}")
+        return CrossCheck(**{**data, "rows": [Row(**row) for row in data["rows"]]})
+    except (KeyError, TypeError, ValueError, OSError) as error:
+        raise ValueError(f"{path} is no cross-check: {error}") from error
