@@ -26,7 +26,7 @@ declared = list(project["dependencies"])
 for asked in sys.argv[1:]:
     declared += extra(asked)
 for requirement in declared:
-    found = re.fullmatch(r"([\w.-]+)>=([\d.]+)", requirement)
+    found = re.fullmatch(r"([\w.-]+)>=([\d.]+)(\s*;.*)?", requirement)
     if not found:
         sys.exit(f"no lowest version in {requirement!r}")
-    print(f"{found[1]}=={found[2]}")
+    print(f"{found[1]}=={found[2]}{found[3] or ''}")
