@@ -14,8 +14,9 @@ from inspect import Parameter
 from math import inf
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
-from pydantic import Field, StrictBool, create_model
+from pydantic import Discriminator, Field, StrictBool, Tag, create_model
 
+from cmverify.exchange.body_tables import Region
 from cmverify.exchange.meanings import meanings
 from cmverify.exchange.model import Fracture, SceneFile
 from cmverify.exchange.table import Table
@@ -30,6 +31,12 @@ from cmverify.exchange.values import (
     Scalar,
     Vector,
 )
+
+#: Where something is: a condition, or shapes.
+Place = Annotated[
+    Annotated[Condition, Tag("condition")] | Annotated[Region, Tag("shapes")],
+    Discriminator(lambda given: "shapes" if isinstance(given, list | dict) else "condition"),
+]
 
 
 @cache
@@ -75,6 +82,8 @@ def kind_of(key: str, annotation: Any) -> Any:
 
     ``Annotated[Value, 2]`` is a value of two components.
     """
+    import solver
+
     origin, members = get_origin(annotation), get_args(annotation)
     if origin in (Union, types.UnionType):
         several = [member for member in members if member is not types.NoneType]
@@ -82,7 +91,8 @@ def kind_of(key: str, annotation: Any) -> Any:
         function = any(get_origin(member) is Callable or _callable(member) for member in several)
         if function:
             numbers = any(member in (float, int) for member in several)
-            found: Any = Scalar if numbers else Condition
+            drawn = any(isinstance(m, type) and issubclass(m, solver.Region) for m in several)
+            found: Any = Scalar if numbers else Place if drawn else Condition
         elif len(several) == 1:
             found = kind_of(key, several[0])
         else:

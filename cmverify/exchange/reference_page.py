@@ -73,13 +73,15 @@ def _section(name: str, entry: dict[str, Any], tables: dict[str, Any], level: st
 
 def _rows(table: dict[str, Any]) -> str:
     lines = ["| key | value | default | |", "|---|---|---|---|"]
-    for key in schema.keys(table):
+    keys = list(schema.keys(table))
+    for key in keys:
         default = "**needed**" if key.needed else f"`{key.default}`" if key.default else ""
         cells = (f"`{key.name}`", key.kind, default, key.meaning)
         lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+    told = {key.name for key in keys}
     for name, entry in table["properties"].items():
         kinds = schema.definitions(entry)
-        if kinds and "$defs" not in table and name != "line":
+        if kinds and name not in told and "$defs" not in table and name != "line":
             cells = (
                 f"`{name}`",
                 f"a table as `[{name}]` of the file",

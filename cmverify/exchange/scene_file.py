@@ -92,6 +92,11 @@ def _asked(file: SceneFile, source: Source) -> tuple[str, dict[str, Any]]:
     if "checkpoint" in options:
         with source.at(name, "checkpoint"):
             state_file.check(options["checkpoint"])
+    for key, value in options.items():
+        if shapes.drawn(value):
+            with source.at(name, key):
+                step = file.discretisation.spacing
+                options[key] = shapes.region(value, source.path.parent, step)
     return name, options
 
 

@@ -68,9 +68,9 @@ def definitions(entry: dict[str, Any]) -> list[str]:
 
 
 def keys(table: dict[str, Any]) -> Iterator[Key]:
-    """Keys of a table's schema whose values are no tables themselves."""
+    """Keys of a table's schema whose values need not be tables themselves."""
     for name, entry in table["properties"].items():
-        if definitions(entry):
+        if not _plain(entry):
             continue
         default = entry.get("default")
         yield Key(
@@ -83,14 +83,28 @@ def keys(table: dict[str, Any]) -> Iterator[Key]:
         )
 
 
+def _choices(entry: dict[str, Any]) -> list[dict[str, Any]]:
+    """What a value may be, one by one."""
+    inner = entry.get("anyOf") or entry.get("oneOf")
+    return [choice for one in inner for choice in _choices(one)] if inner else [entry]
+
+
+def _plain(entry: dict[str, Any]) -> bool:
+    """Whether a key takes something that is no table."""
+    return any(not definitions(one) and one.get("type") != "null" for one in _choices(entry))
+
+
 def in_words(entry: dict[str, Any]) -> str:
     """What a value may be."""
     if "const" in entry:
         return f'"{entry["const"]}"'
     if "enum" in entry:
         return " or ".join(f'"{word}"' for word in entry["enum"])
-    if "anyOf" in entry:
-        kinds = [in_words(one) for one in entry["anyOf"] if one.get("type") != "null"]
+    if "anyOf" in entry or "oneOf" in entry:
+        choices = [one for one in _choices(entry) if one.get("type") != "null"]
+        kinds = [in_words(one) for one in choices if not definitions(one)]
+        if definitions(entry):
+            kinds.append("a table as `[region]` of the file")
         return " or ".join(dict.fromkeys(kinds))
     if entry.get("type") == "array":
         item = in_words(entry["items"])
@@ -117,8 +131,8 @@ def _example(entry: dict[str, Any]) -> Any:
         return entry["examples"][0]
     if "const" in entry or "enum" in entry:
         return entry.get("const") or entry["enum"][0]
-    if "anyOf" in entry:
-        return _example(entry["anyOf"][0])
+    if "anyOf" in entry or "oneOf" in entry:
+        return _example(_choices(entry)[0])
     if entry.get("type") == "array":
         return [_example(entry["items"])] * entry.get("maxItems", 1)
     if entry.get("format") == "condition":

@@ -40,6 +40,11 @@ def region(shapes: Any, folder: Path, step: float) -> Region:
     return found
 
 
+def drawn(value: Any) -> bool:
+    """Whether a value of a scene file is a list of shapes."""
+    return isinstance(value, list) and bool(value) and hasattr(value[0], "shape")
+
+
 def place(table: Any, folder: Path, step: float) -> Any:
     """Where a support or load is: its region, or else its condition; None for everywhere."""
     drawn = getattr(table, "region", None)

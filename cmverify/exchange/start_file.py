@@ -12,6 +12,7 @@ _PLATE = """
 [discretisation]
 spacing = 0.1
 m = 3
+surface = "extrapolated"
 [region]
 shape = "rectangle"
 width = 2.0
@@ -67,19 +68,15 @@ heat_capacity = 1.0e6
 where = "x < -0.7"
 temperature = 0.0
 """
-_CONDUCTING = """
-[discretisation]
-spacing = 0.1
-m = 3
-surface = "extrapolated"
-[region]
-shape = "rectangle"
-width = 2.0
-height = 1.0
-"""
 _LEFT, _RIGHT = (
     f'region = {{ shape = "rectangle", width = 0.6, height = 0.6, centre = [{x}, 0.0] }}\n'
     for x in (-0.65, 0.65)
+)
+
+# Whole ends of the plate as leads: bodies of which the rim is known.
+_ENDS = "\n".join(
+    f'{lead} = {{ shape = "rectangle", width = 0.3, height = 1.0, centre = [{x}, 0.0] }}'
+    for lead, x in (("plus", 0.85), ("minus", -0.85))
 )
 
 #: What a file is for, and the file without comments; analyses by their own names.
@@ -91,7 +88,7 @@ KINDS: dict[str, tuple[str, str]] = {
     ),
     "electric": (
         "Current between two leads",
-        _CONDUCTING
+        _PLATE
         + '[material]\nkind = "electric"\nresistivities = [1.0, 2.0]\n'
         + f'[[support]]\nkind = "lead"\n{_LEFT}potential = 0.0\n'
         + f'[[support]]\nkind = "lead"\n{_RIGHT}'
@@ -99,7 +96,7 @@ KINDS: dict[str, tuple[str, str]] = {
     ),
     "inclusion": (
         "A plate with a hole and a stiff inclusion",
-        _CONDUCTING.replace("[region]", "[[region]]").replace("0.1", "0.05")
+        _PLATE.replace("[region]", "[[region]]").replace("0.1", "0.05")
         + '[[region]]\nshape = "disc"\nradius = 0.2\ncentre = [0.4, 0.0]\noperation = "subtract"\n'
         + _SOLID
         + '[[inclusion]]\nregion = { shape = "disc", radius = 0.2, centre = [-0.4, 0.0] }\n'
@@ -128,7 +125,7 @@ KINDS: dict[str, tuple[str, str]] = {
     ),
     "sensing": (
         "A crack grows, and a voltmeter tells",
-        _CONDUCTING
+        _PLATE
         + _ORTHOTROPIC
         + _OPENED
         + "[sensing]\nG1 = 100.0\nG2 = 80.0\nresistivities = [1.0e-3, 2.0e-3]\n"
@@ -139,25 +136,30 @@ KINDS: dict[str, tuple[str, str]] = {
     ),
     "piezoresistive": (
         "The resistance of a bar that is pulled",
-        _CONDUCTING
+        _PLATE
         + _SOLID
         + _HELD
         + _PULLED
-        + '[piezoresistive]\ngauge = 8.0\nplus = "x > 0.7"\nminus = "x < -0.7"\n'
+        + "[piezoresistive]\ngauge = 8.0\n"
+        + _ENDS
+        + "\n"
         + "resistivities = [2.0, 2.0]\n",
     ),
     "joule": (
         "A plate that a current heats and the heat strains",
-        _CONDUCTING
+        _PLATE
         + _SOLID
         + _HELD
-        + '[joule]\nplus = "x > 0.7"\nminus = "x < -0.7"\nsink = "abs(x) > 0.7"\nvoltage = 0.1\n'
+        + "[joule]\n"
+        + _ENDS
+        + '\nsink = "abs(x) > 0.7"\nvoltage = 0.1\n'
         + "resistivities = [1.0e-3, 1.0e-3]\nconductivities = [1.0, 1.0]\n"
         + "expansions = [1.0e-5, 1.0e-5]\n",
     ),
     "thermoelastic": (
         "A bar that rings warms where it is compressed",
-        _PLATE
+        # Deformational heating knows whole bonds only.
+        _PLATE.replace('"extrapolated"', '"volume"')
         + _SOLID
         + _HELD
         + "[thermoelastic]\nconductivities = [50.0, 50.0]\nexpansions = [1.0e-5, 1.0e-5]\n"

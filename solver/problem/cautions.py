@@ -106,11 +106,13 @@ def on_edges(bonds: Bonds) -> tuple[str, ...]:
 
 
 def missing_bonds(bonds: Bonds, held: Mask, damaged: bool) -> tuple[str, ...]:
-    """Says how much is missing at free edges and cracks that no treatment makes up for.
+    """Says how much is missing at free edges and cracks that no treatment makes up for in full.
 
     A skin of one horizon is softer than the solid. What of a body's energy is missing was measured
     as 0.6 to 1.25 times the missing share of its bonds, on plates whole, slotted, cracked and
-    holed, of 20 to 80 cells with m = 3 and 5.
+    holed, of 20 to 80 cells with m = 3 and 5. The volume method stiffens what is left along edges
+    as across them: bars, holed plates and cantilevers of 10 to 40 cells came out stiffer by 0.05 to
+    0.85 times the share, with an edge crack softer by 0.5 to 1.3 times it.
 
     Parameters
     ----------
@@ -118,7 +120,7 @@ def missing_bonds(bonds: Bonds, held: Mask, damaged: bool) -> tuple[str, ...]:
     damaged : bool
         Whether single bonds are broken: those are missing on purpose.
     """
-    if bonds.treatment != "none" or held.all():
+    if bonds.treatment == "extrapolated" or held.all():
         return ()
     weight = bonds.family.weight
     missing = np.zeros(bonds.lattice.count)
@@ -132,6 +134,13 @@ def missing_bonds(bonds: Bonds, held: Mask, damaged: bool) -> tuple[str, ...]:
     share = missing[~held].sum() / (weight.sum() * (~held).sum())
     if share <= _MISSING:
         return ()
+    if bonds.treatment == "volume":
+        return (
+            f"{share:.1%} of the bonds of free particles are missing at edges and cracks, and "
+            f"surface='volume' makes up for them in the mean alone: bodies came out stiffer by up "
+            f"to 0.85 times that share, cracked ones softer by up to 1.3 times it (measured); it "
+            f"falls like the horizon over the body's size; 'extrapolated' ends bonds at edges",
+        )
     return (
         f"surface='none' leaves out {share:.1%} of the bonds of free particles, at edges and "
         f"cracks: the body carries less by about that share (0.6 to 1.25 times it, measured); it "

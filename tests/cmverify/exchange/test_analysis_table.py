@@ -12,7 +12,7 @@ from cmverify.exchange import scene_file
 from cmverify.exchange.analysis_table import kind_of, scene_model, table_of
 from cmverify.exchange.refusal import SceneFileError
 from solver.analyses import Analysis, analyses
-from solver.geometry import Where
+from solver.geometry import Region, Where
 from solver.problem.conditions import Value
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
@@ -66,6 +66,26 @@ def test_keywords_become_keys():
     for wrong in ({}, {"count": 0}, {"count": 1, "kind": "c"}, {"count": 1, "quick": 1}):
         with pytest.raises(ValidationError):
             table.model_validate(wrong)
+
+
+def test_a_place_is_a_condition_or_shapes(tmp_path):
+    text = PLATE + (
+        '[joule]\nsink = "x > 0.3"\nvoltage = 1.0\nresistivities = [1, 1]\n'
+        "conductivities = [1, 1]\nexpansions = [1, 1]\n"
+        'plus = { shape = "rectangle", width = 0.2, height = 0.8, centre = [0.4, 0.0] }\n'
+        'minus = [{ shape = "disc", radius = 0.15 }]\n'
+    )
+    found = scene_file.request(written(tmp_path, text)).options
+    assert isinstance(found["plus"], Region)
+    assert found["minus"].contains(np.zeros(1), np.zeros(1)).all()
+    for old, new, message in (
+        ('"disc"', '"disk"', r"minus.*disk.*disc"),
+        ("radius = 0.15", "radius = -1", r"minus.*positive"),
+        ('[{ shape = "disc", radius = 0.15 }]', "[]", r"minus.*shape"),
+        ('[{ shape = "disc", radius = 0.15 }]', "3", r'minus.*condition such as "x < 1"'),
+    ):
+        with pytest.raises(SceneFileError, match=rf"scene\.toml:\d+: \[joule\] {message}"):
+            scene_file.request(written(tmp_path, text.replace(old, new)))
 
 
 def test_pairs_are_vectors_of_formulas_or_points():

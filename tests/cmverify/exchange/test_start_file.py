@@ -44,7 +44,9 @@ def test_it_is_solved_as_it_is(tmp_path, kind):
     assert all(np.isfinite(values).all() for values in fields.values())
     # Something happens in each.
     assert max(np.abs(v).max() for k, v in fields.items() if k != "prescribed") > 0
-    assert not found.summary().get("warnings")
+    said = found.summary().get("warnings") or ()
+    # Deformational heating knows whole bonds only: its file is told what its edges lack.
+    assert not [w for w in said if kind != "thermoelastic" or "in the mean alone" not in w]
 
 
 @pytest.mark.parametrize("kind", start_file.KINDS)

@@ -24,8 +24,9 @@ def thin(n: int) -> Measurement:
 
 def test_a_measurement_knows_what_the_solver_said():
     method = Method("bond/thin", "bond", thin, {Level.QUICK: (10,)})
-    own, first, second = measure(method, 10).warnings
+    own, *said = measure(method, 10).warnings
     assert own == "its own word"
+    first, second = (warning for warning in said if "cells thick" in warning)
     assert "3 cells thick" in first
     assert "4 cells thick" in second
     assert measure(Method("exact", "exact", trapezium, {Level.QUICK: (10,)}), 10).warnings == ()
