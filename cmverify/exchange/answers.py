@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import NDArray
 
+from cmverify.exchange.layers import APART, LayerError, Layers, layers_of
 from cmverify.exchange.statement import Array, Target
 
 
@@ -35,6 +36,10 @@ class Answer:
     times : (T,) array, optional
     seconds, unknowns : number, optional
         What it took.
+    known : tuple of str
+        Everything that the file holds.
+    notes : tuple of str
+        What was made of it that a reader should know.
     """
 
     name: str
@@ -45,6 +50,7 @@ class Answer:
     seconds: float | None = None
     unknowns: int | None = None
     known: tuple[str, ...] = field(default=())
+    notes: tuple[str, ...] = ()
 
 
 def read(path: Path, targets: Sequence[Target]) -> Answer:
@@ -65,6 +71,8 @@ def read(path: Path, targets: Sequence[Target]) -> Answer:
         answer = readers[suffix](path, targets)
     except AnswerError:
         raise
+    except LayerError as error:
+        raise AnswerError(f"{path}: {error}") from error
     except Exception as error:
         # Damaged files make zipfile, meshio, csv and NumPy raise a dozen kinds of errors.
         said = " ".join(str(error).split()) or type(error).__name__
@@ -85,7 +93,7 @@ def _check(path: Path, answer: Answer, targets: Sequence[Target]) -> None:
         if not np.issubdtype(values.dtype, np.number) or np.iscomplexobj(values):
             raise AnswerError(f"{path}: {target.key} is not made of real numbers")
         if target.points is None:
-            if values.shape != target.reference.shape:
+            if not target.line and values.shape != target.reference.shape:
                 raise AnswerError(
                     f"{path}: {target.key} needs {len(target.reference)} numbers, "
                     f"not shape {values.shape}"
@@ -129,6 +137,20 @@ def _answer(name: str, held: dict[str, Any], targets: Sequence[Target], **more: 
         elif all(column in held for column in target.names):
             parts = [np.asarray(held[column]) for column in target.names]
             values[target.key] = parts[0] if len(parts) == 1 else np.stack(parts, axis=-1)
+    # What is read from a crack's path: given as such, or as nothing but points in their order.
+    path = held.get("path", None if values else more.get("points"))
+    for target in targets:
+        if target.read is not None and path is not None and (target.line or target.key not in held):
+            values[target.key] = target.read(_places(name, path)[:, :2])
+    notes: tuple[str, ...] = ()
+    if (points := more.get("points")) is not None:
+        layers = layers_of(points) if points.shape[1] == 3 else None
+        more["points"] = points[:, :2] if layers is None else layers.points
+        if layers is not None:
+            if more.get("triangles") is not None:
+                more["triangles"] = layers.place[more["triangles"]]
+            timed = {target.key for target in targets if target.times is not None}
+            values, notes = _over_layers(layers, values, timed)
     unknowns = _number(held.get("unknowns"))
     return Answer(
         name,
@@ -136,8 +158,32 @@ def _answer(name: str, held: dict[str, Any], targets: Sequence[Target], **more: 
         seconds=_number(held.get("seconds")),
         unknowns=None if unknowns is None else int(unknowns),
         known=tuple(sorted(map(str, held))),
+        notes=notes,
         **more,
     )
+
+
+def _over_layers(
+    layers: Layers, values: dict[str, Array], timed: set[str]
+) -> tuple[dict[str, Array], tuple[str, ...]]:
+    """Means over the layers of a slab, and a word about them; numbers stay as they are."""
+    found, worst = dict(values), 0.0
+    for key, given in values.items():
+        axis = 1 if key in timed else 0
+        if given.ndim <= axis or given.shape[axis] != layers.members.size:
+            continue
+        mean, apart = layers.mean(np.moveaxis(given, axis, 0))
+        if apart > APART:
+            raise LayerError(
+                f"the layers z of its {key} differ from their mean by {apart:.1%} of the largest "
+                f"value: that is no plane problem; give one plane"
+            )
+        found[key], worst = np.moveaxis(mean, 0, axis), max(worst, apart)
+    said = (
+        f"the mean over {len(layers.members)} layers in z is judged; they differ from it by "
+        f"{worst:.1e} of the largest value at most"
+    )
+    return found, (said,)
 
 
 def _flat(values: Any, target: Target) -> Any:
@@ -150,13 +196,13 @@ def _flat(values: Any, target: Target) -> Any:
     return values
 
 
-def _places(path: Path, points: Any) -> Array:
+def _places(path: Path | str, points: Any) -> Array:
     found = np.asarray(points, dtype=float)
     if found.ndim != 2 or found.shape[1] not in (2, 3) or not len(found):
         raise AnswerError(f"{path}: points need the shape (N, 2), not {found.shape}")
     if not np.isfinite(found).all():
         raise AnswerError(f"{path}: a point is not finite")
-    return found[:, :2]
+    return found
 
 
 def _npz(path: Path, targets: Sequence[Target]) -> Answer:
@@ -213,7 +259,8 @@ def _csv(path: Path, targets: Sequence[Target]) -> Answer:
     places: dict[str, Any] = {}
     x, y = (next((n for n in choice if n in held), None) for choice in (("x", "x1"), ("y", "x2")))
     if x is not None and y is not None:
-        places["points"] = _places(path, np.column_stack([held[x], held[y]]))
+        across = [held[z] for z in ("z", "x3") if z in held][:1]
+        places["points"] = _places(path, np.column_stack([held[x], held[y], *across]))
         numbers: dict[str, Any] = {}
         if any(target.times is not None for target in targets) and "t" in held:
             return _series(path, held, held["t"], places["points"], targets)

@@ -15,10 +15,12 @@ import numpy as np
 from cmverify.case import (
     Case,
     Check,
+    Curve,
     Failed,
     Field,
     FieldSet,
     Level,
+    LinePlot,
     Measurement,
     Method,
 )
@@ -136,6 +138,7 @@ def score(statement: Statement, answer: Answer) -> Measurement:
     segments = tuple(segment for crack in scene.cracks for segment in crack.segments)
     found: dict[str, float] = {}
     items: dict[str, Field] = {}
+    lines: list[LinePlot] = []
     shown: Array | None = None
     for target in statement.targets:
         if target.key not in answer.values:
@@ -147,6 +150,21 @@ def score(statement: Statement, answer: Answer) -> Measurement:
                 f"{int((~np.isfinite(computed)).sum())} of the judged values"
             )
         found[target.quantity] = target.error(computed)
+        if target.line:
+            x, y = target.reference.T
+            curve = Curve(answer.name, computed[:, 0], computed[:, 1], y, x)
+            unit = f" ({target.unit})" if target.unit else ""
+            lines.append(
+                LinePlot(
+                    f"The crack's {target.key}",
+                    f"$x_1${unit}",
+                    f"$x_2${unit}",
+                    (curve,),
+                    over_methods=True,
+                    joined=True,
+                    reference_label="reference",
+                )
+            )
         if target.points is not None and target.times is None:
             shown = target.points if shown is None else shown
             if np.array_equal(shown, target.points):
@@ -158,6 +176,7 @@ def score(statement: Statement, answer: Answer) -> Measurement:
         seconds={} if answer.seconds is None else {"solve": answer.seconds},
         statistics={"read from": answer.name},
         fields=fields,
+        lines=tuple(lines),
     )
 
 

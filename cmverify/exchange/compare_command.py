@@ -117,6 +117,9 @@ def compare(
     terminal.print_verdicts(screen, judged)
     for line in terminal.order_lines(judged):
         screen.print(line, soft_wrap=True)
+    for one in read:
+        for note in one.notes:
+            screen.print(f"{one.name}: {note}", soft_wrap=True)
     for answer, quantities in found.absent.items():
         if quantities:
             screen.print(f"{answer} says nothing about: {', '.join(quantities)}", soft_wrap=True)

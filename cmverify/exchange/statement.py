@@ -13,7 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cmverify.judge.norms import largest_deviation, relative_l2, without_rigid_motion
+from cmverify.judge.norms import (
+    largest_deviation,
+    line_distance,
+    relative_l2,
+    without_rigid_motion,
+)
 
 Array = NDArray[np.float64]
 
@@ -28,8 +33,10 @@ NORMS: dict[str, Callable[[Array | None, Array, Array], float]] = {
     "sqrt(sum |a - b|^2) / sqrt(sum |b|^2)": lambda _, a, b: relative_l2(a, b),
     "sqrt(sum |a - b|^2) / sqrt(sum |b|^2), means of translation and rotation off": _without_rigid,
     "max |a / b - 1|": lambda _, a, b: largest_deviation(a, b),
+    "max |a - b|": lambda _, a, b: float(np.abs(a - b).max()),
+    "largest distance between the lines": lambda _, a, b: line_distance(a, b),
 }
-L2, L2_STRAINED, LARGEST = NORMS
+L2, L2_STRAINED, LARGEST, ABSOLUTE, LINES = NORMS
 
 
 @dataclass(frozen=True)
@@ -54,6 +61,8 @@ class Target:
         Names of its components in tables of columns.
     needed : bool
         Whether an answer without it is refused.
+    read : callable, optional
+        Reads it from the answer's crack path, (k, 2), where the answer gives that and no number.
     """
 
     key: str
@@ -65,6 +74,7 @@ class Target:
     times: Array | None = None
     columns: tuple[str, ...] = ()
     needed: bool = True
+    read: Callable[[Array], Array] | None = None
 
     def __post_init__(self) -> None:
         if self.norm not in NORMS:
@@ -73,6 +83,11 @@ class Target:
         shape = tuple(len(p) for p in parts)
         if self.reference.shape[: len(shape)] != shape:
             raise ValueError(f"target {self.key}: {self.reference.shape} values, {shape} places")
+
+    @property
+    def line(self) -> bool:
+        """Whether it is a line of any number of points, such as a crack's path."""
+        return self.norm == LINES
 
     @property
     def names(self) -> tuple[str, ...]:

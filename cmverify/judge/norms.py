@@ -81,3 +81,18 @@ def largest_deviation(computed: ArrayLike, reference: ArrayLike) -> float:
     if not np.all(b):
         raise ValueError("a reference vanishes: a relative deviation has no meaning")
     return worst(np.abs(a / b - 1.0).ravel())
+
+
+def line_distance(one: ArrayLike, other: ArrayLike) -> float:
+    """Largest distance from a point of either line to the other line (Hausdorff's).
+
+    A line that ends before the other is as far from it as its end.
+
+    Parameters
+    ----------
+    one, other : (k, 2) arrays
+        Corners, two at least; to a fiftieth of each straight part.
+    """
+    from shapely import LineString, hausdorff_distance
+
+    return float(hausdorff_distance(LineString(one), LineString(other), densify=0.02))

@@ -6,10 +6,13 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from cmverify.case import Case, Check, Level, Method
 from cmverify.cases.common import adapters, warm
 from cmverify.cases.kinking.measure import Study, study
-from cmverify.cases.kinking.problem import MATERIALS, Kink
+from cmverify.cases.kinking.problem import ANGLES, MATERIALS, Kink
+from cmverify.exchange.statement import ABSOLUTE, LINES, Pose, Statement, Target
 
 LADDER = {Level.QUICK: (30,), Level.STANDARD: (30, 60), Level.PAPER: (30, 60, 120)}
 #: One thing changed at a time, at a/60; m is changed with the number of bonds that break together.
@@ -30,6 +33,7 @@ HELD = "load held, three mixities"
 VARIED = {Level.PAPER: (60,)}
 FIGURES = "Figs. 25–27: scatter of the paper's own angles about the criterion"
 
+PATHS = "the bound of the angle over a/4, and a cell of a/30 to the side at the old tip"
 QUANTITIES = {
     "rms": "root mean square deviation of the kink angles (line fitted to a/4) from where the "
     "energy release rate is largest, degrees",
@@ -40,11 +44,37 @@ QUANTITIES = {
     "rms near": "as rms, the line fitted up to a/10 only: the K-field at the edge is held fixed "
     "while the crack grows, which matters less there",
     "rms chord": "as rms, from the chord between old and new tip instead of a fitted line",
+    "path": "largest distance, up to a/4 from the old tip, between the crack's path and the "
+    "straight kink of largest energy release rate, a",
     "drive": "median of G over the toughness when the kink is one horizon long; 1 is Griffith's",
     "straight": "deviation from straight in mode I, degrees",
     "mirror": "largest distance between the path and the mirror image of the mirrored crack's, a",
     "seconds": "wall seconds of the slowest angle",
 }
+
+
+def _state(kink: Kink, n: int) -> Statement:
+    """One mixity: how the crack kinks, by number or by its path."""
+    from cmverify.cases.kinking.angles import energy_angle, grown_path, path_angle, straight
+    from cmverify.cases.kinking.problem import scene_of
+
+    angle = energy_angle(kink.material, kink.mixity)
+    return Statement(
+        scene_of(replace(kink, n=n)),
+        (
+            Target("kink_angle", "largest", "°", np.array([angle]), ABSOLUTE,
+                   read=lambda path: np.array([path_angle(path)])),
+            Target("path", "path", "a", straight(angle), LINES, needed=False, read=grown_path),
+        ),
+        (
+            "What is prescribed is the field of K_I = cos α, K_II = sin α; times a factor that is "
+            "raised until the crack has grown to a distance of a/4 from its old tip, the origin.",
+            "The toughness is the same in all directions.",
+            "Judged: kink_angle, one number in degrees from the crack's direction anticlockwise, "
+            "or path, (k, 2) from the old tip on (in a table columns x and y and no others), from "
+            "which the angle of the straight line through it up to a/4 is read.",
+        ),
+    )  # fmt: skip
 
 
 def _case(material: str, name: str, shows: str) -> Case:
@@ -91,6 +121,7 @@ def _case(material: str, name: str, shows: str) -> Case:
         checks=(
             Check(main, "rms", {30: 8.0, 60: 4.0}, source=FIGURES),
             Check(main, "largest", {30: 12.0, 60: 8.0}, source=FIGURES),
+            Check(main, "path", {30: 0.085}, source=PATHS),
             Check(main, "mirror", {30: 1e-6}, source="symmetry", exact=True),
             *straight,
         ),
@@ -99,6 +130,9 @@ def _case(material: str, name: str, shows: str) -> Case:
         primary="rms",
         featured=main,
         timed=False,
+        poses=tuple(
+            Pose(main, partial(_state, replace(kink, mixity=a)), f"mixity {a:g}°") for a in ANGLES
+        ),
     )
 
 

@@ -81,6 +81,58 @@ def read_angle(marks: Array, outer: float = REACH, inner: float = 0.0) -> float:
     return float(np.degrees(np.arctan2(along[1], along[0])))
 
 
+def grown_path(path: Array, reach: float = REACH) -> Array:
+    """The part of a crack's path from the old tip, the origin, to the circle of radius `reach`.
+
+    Parameters
+    ----------
+    path : (k, 2) array
+        In the crack's axes, from the old tip or from the mouth on.
+
+    Raises
+    ------
+    ValueError
+        If it does not pass the old tip, or ends before the circle.
+    """
+    away = np.linalg.norm(path, axis=1)
+    start = int(away.argmin())
+    if len(path) < 2 or away[start] > 0.2 * reach:
+        raise ValueError("the path of a crack begins at its old tip, which is the origin")
+    outside = np.flatnonzero(away[start:] >= reach)
+    if not len(outside):
+        raise ValueError(
+            f"the path ends {away[-1]:.3g} from the old tip: it is judged to {reach:g}"
+        )
+    last = start + int(outside[0])
+    inner, step = path[last - 1], path[last] - path[last - 1]
+    # |inner + s step| = reach.
+    a, b, c = step @ step, inner @ step, inner @ inner - reach**2
+    share = (-b + np.sqrt(b * b - a * c)) / a
+    return np.vstack([path[start:last], inner + share * step])
+
+
+def path_angle(path: Array) -> float:
+    """As `read_angle`, of a path that is a line instead of marks, degrees.
+
+    Raises
+    ------
+    ValueError
+        As `grown_path`.
+    """
+    from shapely import LineString, get_coordinates
+
+    line = LineString(grown_path(path))
+    return read_angle(
+        get_coordinates(line.interpolate(np.linspace(0.0, 1.0, 200), normalized=True)), np.inf
+    )
+
+
+def straight(degrees: float, reach: float = REACH) -> Array:
+    """The straight kink at an angle, (2, 2)."""
+    angle = np.radians(degrees)
+    return reach * np.array([[0.0, 0.0], [np.cos(angle), np.sin(angle)]])
+
+
 def chord_angle(path: Array) -> float:
     """Direction from the old tip to the new one, degrees."""
     step = path[-1] - path[0]

@@ -13,10 +13,13 @@ from cmverify.cases.kinking.angles import (
     chord_angle,
     energy_angle,
     energy_release,
+    grown_path,
     hoop_angle,
     read_angle,
+    straight,
 )
 from cmverify.cases.kinking.problem import ANGLES, REACH, Grown, Kink, grow_kink
+from cmverify.judge.norms import line_distance, worst
 
 #: Coarse grids are for the quick level, which has no time for all mixities.
 FEW = (0.0, 90.0)
@@ -73,6 +76,10 @@ def study(plan: Study, n: int) -> Measurement:
         "rms apart": rms(hoop - energy),
         "rms near": rms(near - energy),
         "rms chord": rms(chord - energy),
+        "path": worst(
+            line_distance(grown_path(g.path), straight(a))
+            for g, a in zip(grown, energy, strict=True)
+        ),
         "drive": float(np.median([drive(g) for g in grown])),
         "seconds": max(seconds),
     }

@@ -20,7 +20,7 @@ from cmverify.cases.common import materials
 from cmverify.cases.common.scenes import cracked_disc
 
 if TYPE_CHECKING:
-    from solver import ElasticTensor
+    from solver import ElasticTensor, Scene
     from solver.bonds import Surface
     from solver.fracture import Growth, ToughnessCalibration
     from solver.fracture.programme import Control
@@ -137,14 +137,12 @@ class Grown:
     run: Growth
 
 
-def grow_kink(kink: Kink, reach: float = REACH) -> Grown:
-    """Let the crack grow until its path leaves the circle of radius `reach` about the old tip."""
-    from solver import Programme, Support, Toughness
-    from solver.fracture import grow
-    from solver.fracture.crack_path import SHORT
+def scene_of(kink: Kink) -> Scene:
+    """The disc before its crack grows, under a K-field of size one."""
+    from solver import Support
 
     mouth = -1.5 * kink.axes[:, 0]
-    scene = cracked_disc(
+    return cracked_disc(
         kink.solid(),
         kink.n,
         Support.layer(cells=kink.m + 0.5, displacement=kink.displacement, rotation=kink.rotation),
@@ -153,6 +151,15 @@ def grow_kink(kink: Kink, reach: float = REACH) -> Grown:
         calibration="lattice",
         surface=kink.surface,
     )
+
+
+def grow_kink(kink: Kink, reach: float = REACH) -> Grown:
+    """Let the crack grow until its path leaves the circle of radius `reach` about the old tip."""
+    from solver import Programme, Toughness
+    from solver.fracture import grow
+    from solver.fracture.crack_path import SHORT
+
+    scene = scene_of(kink)
     run = grow(
         scene,
         Toughness(1.0, calibration=kink.toughness),

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from cmverify.exchange.answers import AnswerError, read
-from cmverify.exchange.statement import LARGEST, Target
+from cmverify.exchange.statement import ABSOLUTE, LARGEST, LINES, Target
 
 POINTS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
 U = Target(
@@ -146,3 +146,62 @@ def test_files_that_are_none_are_refused(tmp_path):
     (tmp_path / "step2.vtu").unlink()
     with pytest.raises(AnswerError, match=r"step2.vtu, which is not there"):
         read(path, [H])
+
+
+# ---- slabs and paths --------------------------------------------------------------------
+
+
+def slab(values, layers=3):
+    """Points and values of layers above each other, the upper ones first."""
+    heights = np.repeat(np.arange(layers)[::-1], len(POINTS))
+    return np.column_stack([np.tile(POINTS, (layers, 1)), heights]), np.tile(values, (layers, 1))
+
+
+def test_slabs_are_averaged_over_their_layers_in_every_kind_of_file(tmp_path):
+    points, values = slab(VALUES)
+    values[4:8] += 0.01  # one layer in three
+    np.savez(tmp_path / "a.npz", points=points, displacement=values)
+    rows = np.column_stack([points, values])
+    head = {"delimiter": ",", "header": "x,y,z,u1,u2", "comments": ""}
+    np.savetxt(tmp_path / "a.csv", rows, **head)
+    data = {"displacement": np.column_stack([values, 9.0 * np.arange(12)])}
+    mesh = meshio.Mesh(points, [("wedge", np.array([[8, 9, 10, 4, 5, 6]]))], point_data=data)
+    mesh.write(tmp_path / "a.vtu")
+    for suffix in (".npz", ".csv", ".vtu"):
+        answer = read(tmp_path / f"a{suffix}", [U])
+        assert answer.points == pytest.approx(POINTS)
+        assert answer.values["displacement"] == pytest.approx(VALUES + 0.01 / 3)
+        assert answer.notes == (
+            "the mean over 3 layers in z is judged; they differ from it by 9.5e-04 of the largest "
+            "value at most",
+        )
+    values[4:8] += 0.2
+    np.savez(tmp_path / "a.npz", points=points, displacement=values)
+    with pytest.raises(AnswerError, match=r"layers z of its displacement differ .* by 1\.9%"):
+        read(tmp_path / "a.npz", [U])
+    np.savez(tmp_path / "a.npz", points=points[:-1], displacement=values[:-1])
+    with pytest.raises(AnswerError, match="do not stand above each other"):
+        read(tmp_path / "a.npz", [U])
+
+
+def test_layers_in_time_are_averaged_too(tmp_path):
+    points, values = slab(np.arange(4.0)[:, None])
+    np.savez(tmp_path / "a.npz", points=points, times=H.times, u2=np.tile(values[:, 0], (5, 1)))
+    answer = read(tmp_path / "a.npz", [H])
+    assert np.array_equal(answer.values["u2"], np.tile(np.arange(4.0), (5, 1)))
+
+
+def test_a_crack_s_path_is_read_as_such_or_as_points(tmp_path):
+    angle = Target("angle", "largest", "°", np.array([45.0]), ABSOLUTE,
+                   read=lambda path: np.degrees(np.arctan2(*path[-1:, ::-1].T)))  # fmt: skip
+    line = Target("path", "path", "m", POINTS[:2], LINES, needed=False, read=lambda path: path)
+    path = np.array([[0.0, 0.0], [1.0, 0.9], [2.0, 2.0]])
+    np.savez(tmp_path / "a.npz", path=path)
+    (tmp_path / "b.json").write_text(json.dumps({"path": path.tolist(), "angle": [40.0]}))
+    np.savetxt(tmp_path / "c.csv", path, delimiter=",", header="x,y", comments="")
+    for name, expected in (("a.npz", 45.0), ("b.json", 40.0), ("c.csv", 45.0)):
+        answer = read(tmp_path / name, [angle, line])
+        assert answer.values["angle"] == pytest.approx([expected])
+        assert np.array_equal(answer.values["path"], path)
+    (tmp_path / "d.json").write_text(json.dumps({"angle": [40.0]}))
+    assert set(read(tmp_path / "d.json", [angle, line]).values) == {"angle"}

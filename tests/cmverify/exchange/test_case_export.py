@@ -7,7 +7,7 @@ import pytest
 
 from cmverify.cases import registry
 from cmverify.exchange.case_export import FORMAT, pose_of, write_case
-from cmverify.exchange.statement import L2, L2_STRAINED, LARGEST, NORMS, Target
+from cmverify.exchange.statement import ABSOLUTE, L2, L2_STRAINED, LARGEST, NORMS, Target
 
 POSED = [
     (case, pose) for case in registry.all_cases() for pose in case.poses[:1]
@@ -37,8 +37,13 @@ def test_statements_speak_of_what_the_case_judges(case, pose):
     for target in statement.targets:
         assert target.quantity in case.quantities
         assert np.isfinite(target.reference).all()
-        assert target.error(target.reference) == 0.0
-        assert target.error(1.01 * target.reference) == pytest.approx(0.01)
+        assert target.error(target.reference) == pytest.approx(0.0, abs=1e-15)
+        if target.norm == ABSOLUTE:
+            assert target.error(target.reference + 1.0) == pytest.approx(1.0)
+        elif target.line:
+            assert target.error(target.reference + np.array([0.0, 3.0])) == pytest.approx(3.0)
+        else:
+            assert target.error(1.01 * target.reference) == pytest.approx(0.01)
     bounded = {check.quantity for check in case.checks if check.method == pose.method}
     assert bounded & {target.quantity for target in statement.targets}
 

@@ -1,6 +1,7 @@
 """An answer is judged by the case's norms and bounds, beside ours, and a wrong one fails."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -31,7 +32,7 @@ def exact():
 
 
 def verdicts(found):
-    outcomes = {record.method: {N: record.outcome} for record in found.records}
+    outcomes = {record.method: {found.resolution: record.outcome} for record in found.records}
     return judge(found.case, outcomes)
 
 
@@ -114,3 +115,30 @@ def test_bad_requests_end_with_a_line_and_code_two(tmp_path, monkeypatch):
         assert said in done.output
         assert "Traceback" not in done.output
     assert "lamb" in run(app, ["export"]).output
+
+
+def test_crack_angles_and_paths_are_judged(ours, tmp_path):
+    from cmverify.cases.kinking.angles import straight
+    from cmverify.exchange import answers
+
+    case = registry.get("kinking-anisotropic")
+    pose = next(pose for pose in case.poses if pose.name == "mixity 45°")
+    targets = pose.state(30).targets
+    right = float(targets[0].reference[0])
+    given = []
+    for name, off in (("right", 0.0), ("near", 5.0), ("off", 13.0)):
+        # With the old crack before it, and beyond where it is judged.
+        path = np.vstack([[[-1.0, 0.0]], straight(right + off, 0.6)])
+        np.savez(tmp_path / f"{name}.npz", path=path)
+        given.append(answers.read(tmp_path / f"{name}.npz", targets))
+    found = compare.compare(case, pose, 30, given, replace(ours, method=pose.method))
+    errors = {r.method: r.outcome.quantities for r in found.records[1:]}
+    assert [errors[n]["largest"] for n in errors] == pytest.approx([0.0, 5.0, 13.0], abs=1e-9)
+    chord = [2 * 0.25 * np.sin(np.radians(off / 2)) for off in (0.0, 5.0, 13.0)]
+    assert [errors[n]["path"] for n in errors] == pytest.approx(chord, abs=1e-3)
+    failed = {(v.method, v.quantity) for v in verdicts(found) if not v.passed}
+    assert {f for f in failed if f[0] in errors} == {("off", "largest")}
+    assert found.records[1].outcome.lines[0].curves[0].label == "right"
+    np.savez(tmp_path / "short.npz", path=straight(right, 0.1))
+    with pytest.raises(AnswerError, match=r"ends 0\.1 from the old tip"):
+        answers.read(tmp_path / "short.npz", targets)
