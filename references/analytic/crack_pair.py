@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import ellipe, ellipkm1
 
+from references.analytic.quadrature import gauss
 from references.analytic.voigt import Floats
 
 # Gauss points between a point and infinity.
@@ -86,7 +87,7 @@ def displacement_and_rotation(
     z = np.asarray(x, dtype=float) + 1j * np.asarray(y, dtype=float)
     if not np.all(np.abs(z) > outer):
         raise ValueError("displacements are known outside the circle through the outer tips only")
-    nodes, weights = np.polynomial.legendre.leggauss(_POINTS)
+    nodes, weights = gauss(_POINTS)
     u, w = 0.5 * (nodes + 1), 0.5 * weights
     far = z[..., None] / u
     rest = (_function(far, inner, outer, tension) - tension) * far / u

@@ -17,6 +17,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.special import erfc
 
+from references.analytic.quadrature import gauss
 from references.analytic.voigt import Floats
 
 # Gauss points over the crack, and over the width.
@@ -44,7 +45,7 @@ def intensity(stress: Callable[[Floats], Floats], crack: float, width: float) ->
     m1 = 0.6147 + 17.1844 * r**2 + 8.7822 * r**6
     m2 = 0.2502 + 3.2899 * r**2 + 70.0444 * r**6
     # 1 − x/a = s² takes the root away.
-    s, weight = np.polynomial.legendre.leggauss(_POINTS)
+    s, weight = gauss(_POINTS)
     s, weight = 0.5 * (s + 1), 0.5 * weight
     shape = 1 + m1 * s**2 + m2 * s**4
     return float(
@@ -68,7 +69,7 @@ def thermal_stress(
     x: Floats, width: float, change: Callable[[Floats], Floats], young: float, expansion: float
 ) -> Floats:
     """σ along a long strip, free of forces and moments, Pa: E α (mean and line of T less T)."""
-    points, weight = np.polynomial.legendre.leggauss(_POINTS)
+    points, weight = gauss(_POINTS)
     there, lever = 0.5 * width * (points + 1), points
     mean = 0.5 * float(weight @ change(there))
     slope = 1.5 * float(weight @ (lever * change(there)))

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 from scipy.integrate import simpson
 from scipy.optimize import brentq
 
+from references.analytic.quadrature import gauss
 from references.analytic.voigt import Floats
 
 # Points of the quadrature along the path in complex time, and of Gauss's rule over the strip.
@@ -96,7 +97,7 @@ def edge_displacement(
     a, b = np.sqrt(density / (lam + 2 * mu)), np.sqrt(density / mu)
     t = np.atleast_1d(np.asarray(times, dtype=float))
     if half_width > 0:
-        nodes, weights = np.polynomial.legendre.leggauss(_STRIP)
+        nodes, weights = gauss(_STRIP)
         distances, weights = abs(x) - half_width * nodes, half_width * weights
     else:
         distances, weights = np.array([abs(x)]), np.ones(1)

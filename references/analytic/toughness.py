@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import beta
 
+from references.analytic.quadrature import gauss
 from references.analytic.voigt import Floats
 
 
@@ -43,7 +44,7 @@ def fracture_energy(
     """
     if not (horizon > 0 and thickness > 0):
         raise ValueError("a cut needs a positive horizon and thickness")
-    node, weight = np.polynomial.legendre.leggauss(points)
+    node, weight = gauss(points)
     node, weight = (node + 1) / 2, weight / 2
     # z = horizon t^2 and xi = z + (horizon - z) s^2: the limit arccos(z/xi) is smooth in s, t.
     z, dz = horizon * node**2, 2 * horizon * node * weight
@@ -112,7 +113,7 @@ def effective_energy(
     -------
     ndarray, one value for each zeta, J/m^2
     """
-    node, weight = np.polynomial.legendre.leggauss(points)
+    node, weight = gauss(points)
     psi = 0.5 * np.pi * node
     angles = np.atleast_1d(np.asarray(zeta, dtype=float))
     values = critical(psi - angles[:, None])
