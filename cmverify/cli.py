@@ -18,6 +18,7 @@ from cmverify.exchange.compare_command import compare, export
 from cmverify.exchange.solve_command import solve
 from cmverify.faults.command import faults
 from cmverify.studies.anisotropy.command import material
+from cmverify.studies.history_command import history
 from cmverify.studies.speed.command import speed
 from cmverify.studies.stability.command import stability
 from cmverify.sweep.command import sweep
@@ -122,6 +123,7 @@ def _manners(
 app.command()(compare)
 app.command()(export)
 app.command()(faults)
+app.command()(history)
 app.command()(new)
 app.command()(schema)
 app.command()(solve)

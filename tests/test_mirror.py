@@ -14,6 +14,7 @@ PACKAGES = ("solver", "cmverify")
 ELSEWHERE = {
     "cmverify/studies/crosscheck_command.py": "tests/cmverify/studies/test_crosscheck.py",
     "cmverify/report/crosscheck_chapter.py": "tests/cmverify/studies/test_crosscheck.py",
+    "cmverify/studies/history_command.py": "tests/cmverify/report/test_history.py",
     "cmverify/studies/precision_command.py": "tests/cmverify/studies/test_precision.py",
     # Aliases of types, and classes without a body.
     "solver/arrays.py": "tests/test_architecture.py",

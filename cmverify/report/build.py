@@ -34,6 +34,7 @@ from cmverify.run.threads import child_environment
 BESIDE = (
     ("stability.html", "Stability of bond models: verdicts, maps, polar plots"),
     ("speed.html", "Speed beside what one would otherwise use"),
+    ("history.html", "The history of times and errors over the commits"),
     ("faults.html", "Faults put in on purpose: which case catches which"),
     ("errata.html", "The paper, audited: every equation and number"),
 )

@@ -1,9 +1,9 @@
 """FEniCSx beside scikit-fem: the finite elements that judge the solver, solved by another code.
 
-What a case owes to finite elements is solved by both: its methods of kind "fem" at the coarsest
-resolution, and the problems that it names as `Case.elements`. On the same mesh both solve the
-same equations, and differ by rounding. On a mesh with each triangle cut in four FEniCSx tells what
-the first mesh is worth.
+What a case owes to finite elements is solved by both: the problems that it names as
+`Case.elements`, or else its methods of kind "fem" at the coarsest resolution. On the same mesh
+both solve the same equations, and differ by rounding. On a mesh with each triangle cut in four
+FEniCSx tells what the first mesh is worth.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ def rows(
     """
     found = []
     for case in cases:
-        for method in case.methods:
+        for method in case.methods if not case.elements else ():
             ladder = method.resolutions.get(level, ())
             if method.kind == "fem" and ladder:
                 listen(f"{case.name} {method.name}")

@@ -40,11 +40,11 @@ def speed(
     from cmverify.run import folder
     from cmverify.run.environment import describe
     from cmverify.run.results import write_text
-    from cmverify.studies.speed import measure, modes, verdicts
+    from cmverify.studies.speed import measure, modes, page, verdicts
 
     screen = console()
     try:
-        earlier = (out / "speed.json", out / "speed.png")
+        earlier = (out / "speed.json", out / "speed.png", out / page.NAME)
         folder.keep(earlier, overwrite, folder.OTHER_OUT)
         folder.check_file(out / "speed.json")
     except folder.FolderError as error:
@@ -87,6 +87,7 @@ def speed(
     document = {
         "machine": describe().as_dict(),
         "level": str(level),
+        "command": f"cmverify speed --level {level} --out {out}",
         "tables": tables,
         "verdicts": [v.as_dict() for v in found],
     }
@@ -95,7 +96,8 @@ def speed(
     from cmverify.studies.speed.figure import draw
 
     draw(tables, out / "speed.png")
-    screen.print(f"Figure: {out / 'speed.png'}  (numbers: {out / 'speed.json'})", soft_wrap=True)
+    written = page.write(document, found, out / "speed.png")
+    screen.print(f"Page: {written}  (numbers: {out / 'speed.json'})", soft_wrap=True)
     raise typer.Exit(0 if all(v.passed for v in found) else 1)
 
 

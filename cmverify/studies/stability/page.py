@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
 
+from cmverify.report import pages
 from cmverify.report.picture import Picture
 from cmverify.run.results import write_text
 from cmverify.studies.stability.assessments import Assessment
@@ -27,10 +27,7 @@ def write(
     verdicts: Sequence[Assessment], sections: Sequence[Section], command: str, folder: Path
 ) -> Path:
     """Write stability.html and the figures beside it; returns the page's path."""
-    from jinja2 import Environment, StrictUndefined
-
     folder.mkdir(parents=True, exist_ok=True)
-    environment = Environment(autoescape=True, undefined=StrictUndefined)
     drawn = []
     for section in sections:
         pictures = []
@@ -38,15 +35,19 @@ def write(
             picture.save(folder / picture.name)
             pictures.append(picture)
         drawn.append({"title": section.title, "text": section.text, "pictures": pictures})
-    resources = files("cmverify.report")
-    page = environment.from_string(
-        (resources / "stability.html").read_text(encoding="utf-8")
-    ).render(
-        css=(resources / "style.css").read_text(encoding="utf-8"),
-        verdicts=verdicts,
-        confirmed=all_confirmed(verdicts),
-        sections=drawn,
-        command=command,
+    titles = [(f"study-{number}", s.title) for number, s in enumerate(sections, 1)]
+    page = (
+        pages.environment()
+        .get_template("stability.html")
+        .render(
+            css=pages.css(),
+            name="stability of bond models",
+            contents=[("verdicts", "Verdicts"), *titles],
+            verdicts=verdicts,
+            confirmed=all_confirmed(verdicts),
+            sections=drawn,
+            command=command,
+        )
     )
     path = folder / "stability.html"
     write_text(path, page)

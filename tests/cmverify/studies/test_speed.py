@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from cmverify.studies.speed import measure, modes, verdicts
+from cmverify.studies.speed import measure, modes, page, verdicts
 from cmverify.studies.speed.measure import Timing
+from tests.cmverify.report import browser
 
 
 def test_all_formats_hold_the_same_operator() -> None:
@@ -119,3 +120,19 @@ def test_modes_of_others_are_ours() -> None:
         assert row.values["slower"] > 0
         assert 0 <= row.values["amiss"] <= modes.COUNT
     assert others[0].values["residual"] < 1e-6
+
+
+def test_the_page_has_every_table_and_what_must_hold(tmp_path) -> None:
+    image = tmp_path / "speed.png"
+    image.write_bytes(b"\x89PNG")
+    (tmp_path / "speed.json").write_text("{}")
+    machine = {"processor": "p", "cores": 2, "python": "3", "commit": ""}
+    tables = {"Growth <x>": [{"name": "a/30", "values": {"us_per_particle": 1.2345, "n": 7}}]}
+    document = {"level": "standard", "machine": machine, "tables": tables, "command": "again"}
+    bounds = [verdicts._at_least("k: gain", 1.0, 2.0), verdicts._at_most("k: error", 0.5, 1.0)]
+    written = page.write(document, bounds, image)
+    text = written.read_text(encoding="utf-8")
+    assert browser.dead_links(written) == []
+    for part in ("1 of 2 bounds hold", "Growth &lt;x&gt;", "us per particle", "1.23", "≥ 2"):
+        assert part in text
+    assert text.index("≥ 2") < text.index("≤ 1"), "what fails comes first"
