@@ -49,6 +49,36 @@ class CrackTip:
     track_products_a_solve.unit = "products"  # type: ignore[attr-defined]
 
 
+class StrongAnisotropy:
+    """Conductors of ratio 100 and 1000 and a turned ply: coarse grids along the strong axis."""
+
+    params = (
+        ["carbon/epoxy at 30°, hole", "heat, ratio 1000", "heat, ratio 100 at π/8"],
+        [60, 120],
+    )
+    param_names = ("scene", "a over spacing")
+    timeout = 120.0
+
+    def setup(self, name: str, resolution: int) -> None:
+        """Compile, and keep the scene."""
+        from cmverify.studies.speed.scenes import static_scenes
+
+        self.problem = static_scenes(resolution)[name].discretise()
+        self.track_iterations(name, resolution)
+
+    def time_solve(self, name: str, resolution: int) -> None:
+        """Seconds, set-up of the preconditioner included."""
+        self.track_iterations(name, resolution)
+
+    def track_iterations(self, name: str, resolution: int) -> int:
+        """Conjugate-gradient iterations to 1e-8, the same at any size."""
+        from solver.analyses.statics import solve
+
+        return solve(self.problem, 1e-8, preconditioning="two-level").statistics.iterations
+
+    track_iterations.unit = "iterations"  # type: ignore[attr-defined]
+
+
 class VCycle:
     """One application of the two-level preconditioner, in single and in double precision."""
 

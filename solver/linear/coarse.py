@@ -22,11 +22,10 @@ from scipy.sparse.csgraph import connected_components
 from ..arrays import Array, Float, Indices
 from ..operators import BondOperator, kernels
 from . import stencil
+from .coarse_grid import CoarseGrid
 
 # Hats a node at most; a support in more pieces than this is rubble.
 _PIECES = 4
-# Gap between hats, in windows, that is not worth a product.
-_GAP = 6
 # Entries of what the surface's nodes add, relative to the largest, that are not worth their place
 # in the factors.
 _SMALL = 1e-6
@@ -66,7 +65,10 @@ class Hats:
     ----------
     operator : BondOperator
     coarsening : int
-        Distance of the coarse nodes in cells of the lattice.
+        Distance of the coarse nodes in cells of the lattice, but for strongly anisotropic solids,
+        see `CoarseGrid.of`.
+    grid : CoarseGrid, optional
+        The grid of nodes, where it is known.
 
     Attributes
     ----------
@@ -78,13 +80,16 @@ class Hats:
         Coarse node of each hat, row by row `width` to a row, and the piece of its support.
     """
 
-    def __init__(self, operator: BondOperator, coarsening: int) -> None:
+    def __init__(
+        self, operator: BondOperator, coarsening: int, grid: CoarseGrid | None = None
+    ) -> None:
         self.operator, self.coarsening = operator, int(coarsening)
-        lattice = operator.bonds.lattice
-        rows, columns = (axis[operator.active] for axis in lattice.rows_columns)
-        h, count = self.coarsening, len(rows)
-        row, column, fy, fx = rows // h, columns // h, (rows % h) / h, (columns % h) / h
-        self.width = lattice.shape[1] // h + 2
+        self.grid = CoarseGrid.of(operator, self.coarsening) if grid is None else grid
+        lattice, count = operator.bonds.lattice, len(operator.active)
+        cells = (axis[operator.active] for axis in lattice.rows_columns)
+        place, self.width = self.grid.places(*cells), self.grid.size[1]
+        (row, fy), (column, fx) = (np.divmod(axis, self.grid.cells) for axis in place)
+        fy, fx = fy / self.grid.cells, fx / self.grid.cells
         here = row * self.width + column
         node = np.stack([here, here + 1, here + self.width, here + self.width + 1], axis=1)
         weight = np.stack([(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy], axis=1)
@@ -168,21 +173,20 @@ class Hats:
         -------
         csc_array, shape (components·count, components·count)
         """
-        operator, h, c = self.operator, self.coarsening, self.operator.components
-        reach = operator.bonds.family.reach
-        # Offsets of nodes whose hats can meet through a bond, and the period that keeps the
+        c = self.operator.components
+        # Offsets of nodes whose hats can meet through a bond, and the periods that keep the
         # hats of one colour apart.
-        window = (2 * (h - 1) + reach) // h
-        period = 2 * window + 1
+        high, wide = self.grid.windows(self.operator.bonds.family)
+        rows, columns = 2 * high + 1, 2 * wide + 1
         row, column = self.node // self.width, self.node % self.width
         lookup = np.full(
-            (self._pieces_most, row.max() + 2 * period + 1, column.max() + 2 * period + 1), -1
+            (self._pieces_most, row.max() + 2 * rows + 1, column.max() + 2 * columns + 1), -1
         )
-        lookup[self.piece, row + period, column + period] = np.arange(self.count)
+        lookup[self.piece, row + rows, column + columns] = np.arange(self.count)
         if known is None:
-            phase = stencil.phases(operator, row, column, h)
+            phase = stencil.phases(self.operator, self.grid, self.prolongation)
             stale = phase < 0
-            standing = self._regular(phase, lookup[0], period, window)
+            standing = self._regular(phase, lookup[0], (rows, columns), (high, wide))
         else:
             stale = self._stale(changed)
             if not stale.any():
@@ -190,16 +194,14 @@ class Hats:
             standing = self._standing(*known, stale)
         probe = _Probe(self)
         values, starts, ends = [standing[0]], [standing[1]], [standing[2]]
-        for colour in range(self._pieces_most * period**2):
-            piece, rest = divmod(colour, period**2)
-            colour_row, colour_column = divmod(rest, period)
-            lit = (self.piece == piece) & (row % period == colour_row)
-            lit &= (column % period == colour_column) & stale
+        for piece, colour_row, colour_column in np.ndindex(self._pieces_most, rows, columns):
+            lit = (self.piece == piece) & (row % rows == colour_row)
+            lit &= (column % columns == colour_column) & stale
             if not lit.any():
                 continue
-            up = (colour_row - row + window) % period - window
-            right = (colour_column - column + window) % period - window
-            source = lookup[piece, row + up + period, column + right + period]
+            up = (colour_row - row + high) % rows - high
+            right = (colour_column - column + wide) % columns - wide
+            source = lookup[piece, row + up + rows, column + right + columns]
             felt = np.nonzero((source >= 0) & stale[source])[0]
             probe.light(lit)
             # Columns of stale hats are probed; their rows follow by symmetry, the rest stands.
@@ -225,34 +227,38 @@ class Hats:
 
     def _stale(self, changed: Indices | None) -> NDArray[np.bool_]:
         """Hats whose image under K may differ because of particles with changed bonds."""
-        h, lattice = self.coarsening, self.operator.bonds.lattice
-        nodes = np.zeros((lattice.shape[0] // h + 2, self.width), dtype=bool)
+        lattice, cells = self.operator.bonds.lattice, self.grid.cells
+        nodes = np.zeros(self.grid.size, dtype=bool)
         if changed is not None and len(changed):
             particles = self.operator.active[changed]
-            rows, columns = (axis[particles] for axis in lattice.rows_columns)
-            far = h + self.operator.bonds.family.reach
-            for dr in range(-far, far + 1, h):
-                for dc in range(-far, far + 1, h):
-                    r = np.clip((rows + dr) // h, 0, nodes.shape[0] - 2)
-                    k = np.clip((columns + dc) // h, 0, nodes.shape[1] - 2)
+            row, column = self.grid.places(*(axis[particles] for axis in lattice.rows_columns))
+            high, wide = (cells + far for far in self.grid.reach(self.operator.bonds.family))
+            for up in range(-high, high + 1, cells):
+                for right in range(-wide, wide + 1, cells):
+                    r = np.clip((row + up) // cells, 0, nodes.shape[0] - 2)
+                    k = np.clip((column + right) // cells, 0, nodes.shape[1] - 2)
                     for one in (0, 1):
                         nodes[r + one, k] = nodes[r + one, k + 1] = True
         return nodes.ravel()[self.node]
 
     def _regular(
-        self, phase: Indices, lookup: Indices, margin: int, window: int
+        self,
+        phase: Indices,
+        lookup: Indices,
+        margin: tuple[int, int],
+        window: tuple[int, int],
     ) -> tuple[Array, Indices, Indices]:
         """Entries between hats of the bulk, by the stencil of their phase."""
         c = self.operator.components
-        row, column = self.node // self.width + margin, self.node % self.width + margin
+        row, column = self.node // self.width + margin[0], self.node % self.width + margin[1]
         values, starts, ends = [np.zeros(0)], [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
         for number in range(len(self.operator.bulk)):
             hats = np.nonzero(phase == number)[0]
             if not len(hats):
                 continue
-            found = stencil.entries(self.operator, number, self.coarsening, window)
+            found = stencil.entries(self.operator, number, self.grid, window)
             for up, right in np.ndindex(found.shape[:2]):
-                other = lookup[row[hats] + up - window, column[hats] + right - window]
+                other = lookup[row[hats] + up - window[0], column[hats] + right - window[1]]
                 both = (other >= 0) & (phase[other] == number)
                 here, there = hats[both], other[both]
                 for a, b in np.ndindex(c, c):
@@ -297,17 +303,9 @@ class _Probe:
         # What other windows left must be neither read nor restricted.
         self.fine[:, self.particles] = self.image[:, self.particles] = 0.0
         kernels.scatter(self.segments, self.fine, operator.grid)
-        margin = hats.coarsening - 1 + operator.bonds.family.reach
         row, column = np.divmod(hats.node[lit], hats.width)
-        # One window for neighbours in a node row: short runs of particles cost the kernel more
-        # than the gaps between such hats do.
-        apart = (np.diff(row) > 0) | (np.diff(column) > _GAP * margin // hats.coarsening)
-        first = np.concatenate([[0], np.nonzero(apart)[0] + 1])
-        last = np.append(first[1:], len(row)) - 1
-        rows, low, high = row[first], column[first], column[last]
-        spread = np.array([-margin, -margin, margin, margin])
-        boxes = hats.coarsening * np.column_stack([rows, low, rows, high]) + spread
-        self.segments = operator.windows(boxes)
+        reach = operator.bonds.family.reach
+        self.segments = operator.windows(hats.grid.boxes(row, column, reach))
         _, size, first = self.segments[:, :3].astype(np.int64).T
         # Positions first, first + 1, … of every segment.
         shift = np.repeat(first - np.concatenate([[0], np.cumsum(size)[:-1]]), size)

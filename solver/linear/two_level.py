@@ -27,6 +27,7 @@ from ..arrays import Array, Float
 from ..errors import NegativeCurvatureError
 from ..operators import BondOperator, kernels
 from .coarse import Hats
+from .coarse_grid import CoarseGrid
 from .smoother import Smoother, size_of
 
 # Distance of coarse nodes by unknowns a particle: with two products of smoothing the best
@@ -97,7 +98,8 @@ class TwoLevel(LinearOperator):
         `solver.analyses.statics`.
     coarsening : int, optional
         Distance of the coarse nodes in lattice cells; by default 8 (6 in conduction), more for
-        lattices whose coarse matrix would exceed 60,000 unknowns.
+        lattices whose coarse matrix would exceed 60,000 unknowns. In strongly anisotropic solids
+        nodes are closer across the strong axis, see `CoarseGrid.of`.
     degree : int
         Chebyshev degree, products a sweep; one V-cycle costs 2 × degree products.
     regularisation : float
@@ -130,10 +132,12 @@ class TwoLevel(LinearOperator):
         begun = perf_counter()
         self.operator, self.degree = operator, int(degree)
         self.jacobi = BlockJacobi(operator)
-        if coarsening is None:
-            largest = np.sqrt(operator.shape[0] / LARGEST_COARSE)
-            coarsening = max(_COARSENING[operator.components], int(np.ceil(largest)))
-        self.hats = Hats(operator, coarsening)
+        grid: CoarseGrid | None = None
+        if previous is not None:
+            coarsening, grid = previous.hats.coarsening, previous.hats.grid
+        elif coarsening is None:
+            coarsening, grid = _grid(operator)
+        self.hats: Hats = Hats(operator, coarsening, grid)
         self._regularisation = regularisation
         known = changed = None
         if previous is not None:
@@ -209,6 +213,16 @@ class TwoLevel(LinearOperator):
 
     def _adjoint(self) -> TwoLevel:
         return self
+
+
+def _grid(operator: BondOperator) -> tuple[int, CoarseGrid]:
+    """Distance of nodes and grid: the usual ones, coarser for large lattices."""
+    coarsening = _COARSENING[operator.components]
+    while True:
+        grid = CoarseGrid.of(operator, coarsening)
+        if operator.shape[0] <= LARGEST_COARSE * grid.cells:
+            return coarsening, grid
+        coarsening += 1
 
 
 def same_unknowns(one: BondOperator, other: BondOperator) -> bool:

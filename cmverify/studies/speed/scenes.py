@@ -89,5 +89,24 @@ def static_scenes(resolution: int) -> dict[str, Scene]:
             square - hole, material=ElasticTensor.isotropic(1.0, 0.45)
         ),
         "heat, ratio 34": Scene(disc(1.0), spacing, conductor, [layer], calibration="positive"),
+        "carbon/epoxy at 30°, hole": plate(
+            square - hole,
+            material=ElasticTensor(materials.turned(materials.TENSORS["carbon/epoxy"], 30)),
+            calibration="positive",
+        ),
+        "heat, ratio 1000": Scene(
+            disc(1.0),
+            spacing,
+            ConductivityTensor(materials.conductivity(1000.0, 0.0)),
+            [layer],
+            calibration="positive",
+        ),
+        "heat, ratio 100 at π/8": Scene(
+            disc(1.0),
+            spacing,
+            ConductivityTensor(materials.conductivity(100.0, np.pi / 8)),
+            [layer],
+            calibration="positive",
+        ),
         "heat, isotropic": Scene(disc(1.0), spacing, ConductivityTensor.isotropic(1.0), [layer]),
     }

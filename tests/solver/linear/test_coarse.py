@@ -33,6 +33,19 @@ def _prolongation(hats: Hats, components: int) -> sparse.csr_array:
     return sparse.block_diag([matrix] * components, format="csr")
 
 
+def _conductor(ratio: float, angle: float) -> dict[str, object]:
+    axes = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    return {
+        "material": ConductivityTensor(axes.T @ np.diag([ratio, 1.0]) @ axes),
+        "calibration": "positive",
+        "m": 5,
+        "supports": [Support.layer(cells=5.5, temperature=0.0)],
+    }
+
+
+PLY = np.array([[140.0, 3, 0], [3, 10, 0], [0, 0, 5]])
+
+
 @pytest.mark.parametrize("cells", [3, 4, 8])
 @pytest.mark.parametrize(
     "changes",
@@ -48,6 +61,10 @@ def _prolongation(hats: Hats, components: int) -> sparse.csr_array:
             "supports": [Support.layer(cells=5.5, temperature=0.0)],
         },
         {"material": ElasticTensor.isotropic(1.0, 1 / 3)},
+        _conductor(100.0, 0.0),
+        _conductor(1000.0, np.pi / 2),
+        _conductor(100.0, np.pi / 8) | {"cracks": [Crack((-1.5, 0.1), (-0.3, 0.1), (0.2, 0.45))]},
+        {"material": ElasticTensor(PLY), "calibration": "positive", "region": disc(1) - disc(0.4)},
         {"supports": [Support.where(lambda x, y: y < -0.7, u2=0.0),
                       Support.where(lambda x, y: x < -0.7, u1=0.0)]},
     ],
@@ -65,9 +82,10 @@ def test_probed_matrix_is_the_galerkin_product(cells: int, changes: dict[str, ob
     assert np.abs(found - expected).max() <= 1e-12 * np.abs(expected).max()
 
 
-def test_hats_sum_to_one_with_and_without_cracks() -> None:
+@pytest.mark.parametrize("changes", [{}, _conductor(40.0, 2.0)])
+def test_hats_sum_to_one_with_and_without_cracks(changes: dict[str, object]) -> None:
     for cracks in ([], [Crack((-1.5, 0.0), (0.0, 0.0))]):
-        operator = _scene(cracks=cracks).discretise().operator
+        operator = _scene(cracks=cracks, **changes).discretise().operator
         hats = Hats(operator, 6)
         ones = hats.prolong(np.ones((1, hats.count)))
         assert np.allclose(ones, 1.0, atol=1e-14)
@@ -88,8 +106,10 @@ def test_no_hat_reaches_across_a_crack_that_cuts_its_support() -> None:
     assert np.all((on_top == 0) | (below == 0))
 
 
-def test_local_update_equals_a_new_matrix() -> None:
-    scene = _scene(spacing=1 / 40, m=3, cracks=[Crack((-1.5, 0.0), (0.0, 0.0))])
+@pytest.mark.parametrize("changes", [{}, _conductor(100.0, 0.5)])
+def test_local_update_equals_a_new_matrix(changes: dict[str, object]) -> None:
+    changes = changes | {"spacing": 1 / 40, "cracks": [Crack((-1.5, 0.0), (0.0, 0.0))]}
+    scene = _scene(**changes)
     grown = dataclasses.replace(
         scene, cracks=[Crack((-1.5, 0.0), (0.0, 0.0), (0.12, 0.08), (0.2, 0.2))]
     )
