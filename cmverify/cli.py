@@ -163,9 +163,14 @@ def run(
     cross_check: Annotated[
         bool, typer.Option("--cross-check", help="Have FEniCSx solve the finite elements too.")
     ] = False,
+    dask: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="Dask scheduler whose workers measure instead."),
+    ] = None,
 ) -> None:
     """Run cases, judge them and write the report. Exit code 0 only if every check holds."""
     from cmverify.run import folder
+    from cmverify.run.cluster import ClusterError, connected
 
     cases = _select(names)
     if jobs < 0:
@@ -177,9 +182,11 @@ def run(
             folder.keep([json], overwrite)
             folder.check_file(json)
         folder.require_own(out)
+        if dask is not None:
+            connected(dask).close()
         with folder.claimed(out):
-            _run(cases, names, level, jobs, out, resume, timeout, json, cross_check)
-    except folder.FolderError as error:
+            _run(cases, names, level, jobs, out, resume, timeout, json, cross_check, dask)
+    except (folder.FolderError, ClusterError) as error:
         refuse(str(error))
 
 
@@ -193,6 +200,7 @@ def _run(
     timeout: float,
     json: Path | None,
     cross_check: bool,
+    dask: str | None,
 ) -> NoReturn:
     """Measure, judge and report, in a folder that is this run's own."""
     import datetime
@@ -215,7 +223,7 @@ def _run(
         level=str(level),
         jobs=jobs,
         threads=threads_per_worker(jobs),
-        command=_command(names, level, jobs, out),
+        command=_command(names, level, jobs, out, dask),
         started=started.isoformat(timespec="seconds"),
         wall_seconds=0.0,
         environment=environment.describe().as_dict(),
@@ -232,8 +240,9 @@ def _run(
             previous.set_aside(out)
         with LiveProgress(screen, len(plan), {c.name: c.length for c in cases}) as live:
             records = runner.run(
-                cases, level, out, jobs=jobs, resume=resume, timeout=timeout, listen=live.listen
-            )
+                cases, level, out, jobs=jobs, resume=resume, timeout=timeout, listen=live.listen,
+                dask=dask,
+            )  # fmt: skip
         info = replace(info, wall_seconds=time.perf_counter() - clock, finished=True)
         summary.save_info(info, out)
     except KeyboardInterrupt:
@@ -512,8 +521,10 @@ def _write(
         )
 
 
-def _command(names: list[str] | None, level: Level, jobs: int, out: Path) -> str:
+def _command(names: list[str] | None, level: Level, jobs: int, out: Path, dask: str | None) -> str:
     parts = ["cmverify run", *(names or []), f"--level {level} --jobs {jobs} --out {out}"]
+    if dask is not None:
+        parts.append(f"--dask {dask}")
     return " ".join(parts)
 
 

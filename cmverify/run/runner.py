@@ -22,7 +22,7 @@ from cmverify.case import Case, Failed, Level
 from cmverify.run import results, unfinished
 from cmverify.run.lifeline import end_group
 from cmverify.run.threads import child_environment, thread_environment, threads_per_worker
-from cmverify.run.worker import serve
+from cmverify.run.worker import measured, serve
 
 Task = tuple[str, str, int]
 
@@ -62,6 +62,7 @@ def run(
     timeout: float = 3600.0,
     listen: Callable[[Event], None] = lambda event: None,
     registry: str = "cmverify.cases.registry",
+    dask: str | None = None,
 ) -> list[results.Record]:
     """Run every (method, resolution) of a level and return the records, case by case.
 
@@ -80,13 +81,18 @@ def run(
         Told of every `Event`, in this process.
     registry : str
         Module in which workers look cases up by name.
+    dask : str, optional
+        Address of a Dask scheduler whose workers measure instead; there `timeout` ends nothing,
+        and records of any number of threads are reused.
 
     Raises
     ------
     UnwritableError
         If a record cannot be written.
+    ClusterError
+        If no scheduler answers.
     """
-    threads = threads_per_worker(jobs)
+    threads = None if dask else threads_per_worker(jobs)
     tasks = plan(cases, level)
     todo: deque[Task] = deque()
     current = results.source_fingerprint()
@@ -103,8 +109,37 @@ def run(
     # grow take hundreds of solves at any resolution.
     growing = {c.name for c in cases if "fracture" in c.tags}
     todo = deque(sorted(todo, key=lambda task: (task[0] not in growing, -task[2])))
-    _drain(todo, folder, min(jobs, max(len(todo), 1)), threads, timeout, listen, registry)
+    if threads is None:
+        _on_cluster(todo, folder, str(dask), listen, registry, current)
+    else:
+        _drain(todo, folder, min(jobs, max(len(todo), 1)), threads, timeout, listen, registry)
     return [results.load(results.stem(folder, *task).with_suffix(".json")) for task in tasks]
+
+
+def _on_cluster(
+    todo: Iterable[Task],
+    folder: Path,
+    address: str,
+    listen: Callable[[Event], None],
+    registry: str,
+    current: str,
+) -> None:
+    """Have everything measured by the workers of a Dask scheduler."""
+    from cmverify.run.cluster import connected, done_on
+
+    tasks = {results.stem(folder, *task).relative_to(folder).as_posix(): task for task in todo}
+    place = str(folder.resolve())
+    given = {key: (registry, *task, place, current) for key, task in tasks.items()}
+    with connected(address) as client:
+        for key, record, reason in done_on(client, measured, given):
+            task = tasks[key]
+            if reason is not None:
+                _fail(task, Failed("WorkerDied", reason), folder, 1, 0.0, listen)
+                continue
+            if not results.stem(folder, *task).with_suffix(".json").is_file():
+                _save(record, folder)  # from a machine with other disks
+            said = record.outcome.message if isinstance(record.outcome, Failed) else None
+            listen(Event("failed" if said else "finished", task, record.wall_seconds, said))
 
 
 def plan(cases: Iterable[Case], level: Level) -> list[Task]:
@@ -112,7 +147,7 @@ def plan(cases: Iterable[Case], level: Level) -> list[Task]:
     return [(c.name, m.name, n) for c in cases for m, n in c.plan(level)]
 
 
-def _reusable(folder: Path, task: Task, threads: int, fingerprint: str) -> bool:
+def _reusable(folder: Path, task: Task, threads: int | None, fingerprint: str) -> bool:
     path = results.stem(folder, *task).with_suffix(".json")
     if not path.exists():
         return False
@@ -121,7 +156,7 @@ def _reusable(folder: Path, task: Task, threads: int, fingerprint: str) -> bool:
     except ValueError:
         return False
     same_code = record.fingerprint == fingerprint
-    return same_code and record.threads == threads and not record.failed
+    return same_code and threads in (None, record.threads) and not record.failed
 
 
 def _drain(
@@ -222,14 +257,18 @@ def _fail(
 ) -> None:
     """Record a failure on behalf of a worker that cannot."""
     fingerprint = results.source_fingerprint()
+    _save(results.Record(*task, outcome, threads, seconds, fingerprint), folder)
+    listen(Event("failed", task, seconds, outcome.message))
+
+
+def _save(record: results.Record, folder: Path) -> None:
     try:
-        results.save(results.Record(*task, outcome, threads, seconds, fingerprint), folder)
+        results.save(record, folder)
     except OSError as error:
         said = error.strerror or str(error)
         raise UnwritableError(
-            f"the result of {task[0]} {task[1]} cannot be written: {said}"
+            f"the result of {record.case} {record.method} cannot be written: {said}"
         ) from error
-    listen(Event("failed", task, seconds, outcome.message))
 
 
 def _stop(worker: _Worker) -> None:

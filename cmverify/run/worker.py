@@ -14,8 +14,11 @@ from weakref import WeakSet
 
 from cmverify.case import Case, Failed, Measurement, Method, Outcome, Setting
 from cmverify.run import results, unfinished
+from cmverify.run.cluster import ALONE, journal
 from cmverify.run.lifeline import hold
 
+#: What the workers of a cluster began and finished, beside the records.
+LOG = "cluster.log"
 _warm: WeakSet[Callable[[], None]] = WeakSet()
 
 
@@ -113,6 +116,57 @@ def record(
     outcome = attempt(method, resolution)
     wall = time.perf_counter() - start
     return results.Record(case.name, method.name, resolution, outcome, threads, wall, fingerprint)
+
+
+def measured(
+    registry: str, name: str, method: str, resolution: int, folder: str, fingerprint: str
+) -> results.Record:
+    """Measure on a worker of a cluster, unless the record stands there already.
+
+    Where the run's folder is on this machine's disks, the record is written there and a long
+    measurement goes on from what a worker that died has left.
+
+    Raises
+    ------
+    RuntimeError
+        If this worker has other code than the run.
+    """
+    from contextlib import nullcontext
+    from importlib import import_module
+
+    if results.source_fingerprint() != fingerprint:
+        raise RuntimeError("the cluster's workers have another version of cmverify than the run")
+    place = Path(folder)
+    here = place.is_dir()
+    stem = results.stem(place, name, method, resolution)
+    with ALONE:
+        if here and (known := _finished(stem, fingerprint)) is not None:
+            return known
+        journal(place / LOG, "started", stem.relative_to(place).as_posix())
+        case = import_module(registry).get(name)
+        keep = unfinished.kept_in(unfinished.folder(stem, fingerprint)) if here else nullcontext()
+        with keep:
+            done = record(case, case.method(method), resolution, threads_here(), fingerprint)
+        if here:
+            results.save(done, place)
+            journal(place / LOG, "finished", stem.relative_to(place).as_posix())
+        return done
+
+
+def _finished(stem: Path, fingerprint: str) -> results.Record | None:
+    """The record that this very code has written, or None."""
+    try:
+        found = results.load(stem.with_suffix(".json"))
+    except (OSError, ValueError):
+        return None
+    return found if found.fingerprint == fingerprint else None
+
+
+def threads_here() -> int:
+    """Threads that kernels use in this process."""
+    import numba
+
+    return int(numba.get_num_threads())
 
 
 def serve(

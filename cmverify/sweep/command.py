@@ -46,7 +46,7 @@ def sweep(
                 f"{state:<8} {next(number)}/{len(points)}: {_said(point.labels)}"
             ),
         )
-    except (ValueError, ImportError, FolderError) as error:
+    except (ValueError, FolderError) as error:
         refuse(str(error))
     except OSError as error:
         refuse(str(error.strerror or error))

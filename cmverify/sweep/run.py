@@ -72,8 +72,8 @@ def sweep(
     ------
     SceneFileError, GridError
         If a point asks for what does not exist, before anything is solved.
-    ImportError
-        If Dask is asked for and not installed.
+    ClusterError
+        If Dask is asked for and not installed, or no scheduler answers.
     """
     return run(points(Path(scene), grid), Path(out), jobs=jobs, dask=dask, listen=listen)
 
@@ -178,27 +178,15 @@ def _pool(
 
 def on_cluster(todo: Sequence[Point], folder: Path, address: str) -> Done:
     """The same, on the workers of a Dask scheduler."""
-    if find_spec("distributed") is None:
-        raise ImportError("a Dask cluster needs Dask: pip install 'cmverify[cluster]'")
-    from distributed import Client
-    from distributed import as_completed as finished
+    from cmverify.run.cluster import connected, done_on
 
     if not todo:
         return
-    with Client(address) as client:
-        tasks = {
-            client.submit(
-                work.solve, point, str(folder.resolve()), key=f"cmverify-{point.key}", retries=2
-            ): point
-            for point in todo
-        }
-        for task in finished(list(tasks)):
-            point = tasks[task]
-            if task.status == "finished":
-                yield point, task.result()
-            else:
-                yield point, " ".join(str(task.exception()).split()) or task.status
-            task.release()
+    points = {point.key: point for point in todo}
+    given = {point.key: (point, str(folder.resolve())) for point in todo}
+    with connected(address) as client:
+        for key, record, reason in done_on(client, work.solve, given):
+            yield points[key], record if reason is None else reason
 
 
 def _row(point: Point, record: dict[str, Any]) -> dict[str, Any]:

@@ -4,19 +4,15 @@ from __future__ import annotations
 
 import json
 import math
-import os
-import platform
-import threading
 import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from cmverify.run import cluster
+from cmverify.run.cluster import ALONE
 from cmverify.sweep.grid import Point
-
-#: Kernels are not for two threads of one process at once.
-_ALONE = threading.Lock()
 
 
 def record_path(folder: Path, key: str) -> Path:
@@ -47,7 +43,7 @@ def solve(point: Point, folder: str) -> dict[str, Any]:
     record. Where the folder is not this machine's, the record goes back as it is returned.
     """
     place = Path(folder)
-    with _ALONE:
+    with ALONE:
         if (known := load(place, point.key)) is not None:
             return known
         journal(place, "started", point.key)
@@ -60,10 +56,7 @@ def solve(point: Point, folder: str) -> dict[str, Any]:
 
 def journal(folder: Path, what: str, key: str) -> None:
     """A line about a point and the process that works on it, in sweep.log; lines stay whole."""
-    if folder.is_dir():
-        line = f"{what} {key} {platform.node()}:{os.getpid()}\n"
-        with open(folder / "sweep.log", "ab", buffering=0) as stream:
-            stream.write(line.encode())
+    cluster.journal(folder / "sweep.log", what, key)
 
 
 def begun(folder: Path) -> set[str]:
