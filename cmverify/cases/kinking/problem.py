@@ -38,7 +38,9 @@ class Kink:
 
     Attributes
     ----------
-    material : "silicon" or "fully anisotropic"
+    material : str
+        Its angles by the energy criterion are stored for "silicon" and "fully anisotropic"; any
+        other that `materials.named` knows can be grown too.
     mixity : float
         α_K = atan(K_II/K_I), degrees.
     n : int
@@ -75,7 +77,7 @@ class Kink:
     @property
     def voigt(self) -> Array:
         """Stiffness in the crack's axes, GPa."""
-        voigt = materials.TENSORS[self.material]
+        voigt = materials.named(self.material)
         if self.mirrored:
             flip = np.array([1.0, 1.0, -1.0])
             voigt = voigt * np.outer(flip, flip)

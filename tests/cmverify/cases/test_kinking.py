@@ -8,6 +8,7 @@ import pytest
 from cmverify.cases.kinking import CASES, angles, measure, problem
 from cmverify.cases.kinking.problem import Kink
 from cmverify.judge.verdict import judge
+from references.analytic.kinking import hoop_kink_angle
 
 SILICON, ANISOTROPIC = CASES
 
@@ -86,3 +87,19 @@ def test_a_crack_at_an_angle_to_the_lattice_sees_the_same_material():
 def test_a_batch_is_what_a_cut_breaks_per_cell(m, count):
     assert problem.batch(Kink("silicon", 0.0, 60, m=m)) == pytest.approx(count, abs=1)
     assert problem.batch(Kink("silicon", 0.0, 60, front=1e-9)) == 1
+
+
+# Kinks that a row ahead of the crack holds back, and those that leave it, α_K in degrees.
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("m", "mixity", "held"), [(3, 12.0, True), (5, 4.0, True), (5, 12.0, False), (7, 6.0, False)]
+)
+def test_a_row_of_the_lattice_holds_small_kinks_and_the_fewer_the_larger_m(m, mixity, held):
+    """Led by few bonds: up to 22° are held at m = 3, 8° and not 22° at m = 5, not 12° at m = 7."""
+    grown = problem.grow_kink(Kink("isotropic:0.2", mixity, 24, m=m, front=1 / 8))
+    found = angles.read_angle(grown.marks)
+    wanted = np.degrees(
+        hoop_kink_angle(grown.kink.voigt, np.cos(np.radians(mixity)), np.sin(np.radians(mixity)))
+    )
+    assert wanted == pytest.approx(-1.9 * mixity, abs=1.0)
+    assert found == pytest.approx(0.0 if held else wanted, abs=1e-9 if held else 3.0)
