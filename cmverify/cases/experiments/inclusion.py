@@ -3,9 +3,9 @@
 Edge a = 30 mm, disc of diameter a/3 held, E = 4000 MPa, ν = 0.2, G = 0.01 N/mm, plane stress. The
 upper edge is moved by u* in steps of 1e-4 mm; no bond breaks that touches the disc or the edge.
 
-Not given by the text, and our choice: the upper edge is one row of particles that moves straight up
-(u1 = 0) and does not turn; so does the disc. What of it matters is measured: methods `grip of a
-horizon` and `free to slide`.
+Not given by the text, and our choice: the upper edge is one row of particles that moves straight
+up (u1 = 0) and does not turn; so does the disc. What of it matters is measured: methods `grip of
+a horizon` and `free to slide`.
 
 The first crack appears at a point where stress is finite, so that the load at which it does is
 that of a material with a strength: the horizon sets it, u* grows as δ^(−1/2), and only at the
@@ -14,9 +14,22 @@ the crack begins, symmetry to the last bond, energies. Shown: the rest.
 
 How wide the band of broken bonds is depends on how many break between two equilibria: where all
 overloaded ones break at once, as in the paper, a length of crack costs 1.0, 1.2, 1.6 G at a/60,
-a/120, a/240. Small batches cost just G (0.98 at a/60), but run along a row of the lattice; they do
-so too where cuts along rows are no cheaper than others (`small batches, levelled`: the tips end
-0.017 a below their start, with all at once 0.083 a), so that a cut's cost is not what holds them.
+a/120, a/240. Small batches cost just G (0.98 at a/60), but run along a row of the lattice: at
+a/60 the tips end 0.017 a from the height at which they began, with all at once 0.083 a below it.
+
+Why they do: a crack between two rows has broken bonds across them ahead of its tip, and to leave
+them it has to break others that are still whole; the row *holds* it. Measured with K-fields that
+ask an isotropic crack on a row for a kink (`tests/cmverify/cases/test_kinking.py`, ``-k row``),
+an eighth of a cell's bonds at a time: m = 3 goes straight on where 22° would be right; m = 5
+where 8° would be, turns by 1–2° where 12° would be and follows at 17°; m = 7 turns by 1–4° where
+8° would be and follows at 12°. So it is the family that decides, not the spacing (m = 5 does the
+same at a/24 and at a/48), and not the cost of the cut (with cuts in all directions of bonds
+levelled m = 5 goes straight on at 12°). All of a cell's bonds at once, which drives the crack
+harder than it needs, follow at 12° with m = 5. So a path is independent of the batch where it
+leaves the rows by more than the angle that they hold: that takes a larger m, or a lattice turned
+against the crack (an isotropic crack at 22.5° to the rows runs along one with m = 3 and is 3.3°
+off with m = 5). A finer lattice and levelled cuts do not make it so.
+
 Steps are ten times as large on lattices coarser than a/60.
 
 Measured (u* in ū of the first bond and of a crack): steps 0.605 and 0.63 at a/60, 0.735 and 0.755

@@ -15,6 +15,8 @@ from cmverify.cases.kinking.problem import ANGLES, MATERIALS, Kink
 from cmverify.exchange.statement import ABSOLUTE, LINES, Pose, Statement, Target
 
 LADDER = {Level.QUICK: (30,), Level.STANDARD: (30, 60), Level.PAPER: (30, 60, 120)}
+#: Along the equilibrium path, with cuts in every direction of bonds costing the same.
+LED = "levelled cuts, batch ÷ 8"
 #: One thing changed at a time, at a/60; m is changed with the number of bonds that break together.
 VARIATIONS: dict[str, dict[str, Any]] = {
     "m = 3": {"m": 3},
@@ -25,6 +27,7 @@ VARIATIONS: dict[str, dict[str, Any]] = {
     "turned 22.5°": {"turn": 22.5},
     "turned 22.5°, batch ÷ 8": {"turn": 22.5, "front": 1 / 8},
     "even bonds, batch ÷ 2": {"toughness": "even", "front": 1 / 2},
+    LED: {"toughness": "directions", "front": 1 / 8},
     "no surface factors": {"surface": "none"},
     "extrapolated faces": {"surface": "extrapolated"},
 }
@@ -80,11 +83,10 @@ def _state(kink: Kink, n: int) -> Statement:
 def _case(material: str, name: str, shows: str) -> Case:
     kink = Kink(material, 0.0, 0)
     main = "bond/lattice"
-    straight = (
-        [Check(main, "straight", {30: 1.0}, source="symmetry", exact=True)]
-        if name == "silicon"
-        else []
-    )
+    silicon = [
+        Check(main, "straight", {30: 1.0}, source="symmetry", exact=True),
+        Check(f"bond/{LED}", "rms", {60: 4.0}, source=FIGURES),
+    ]
     return Case(
         name=f"kinking-{name}",
         title=f"Crack kinking, {material} material"
@@ -123,7 +125,8 @@ def _case(material: str, name: str, shows: str) -> Case:
             Check(main, "largest", {30: 12.0, 60: 8.0}, source=FIGURES),
             Check(main, "path", {30: 0.085}, source=PATHS),
             Check(main, "mirror", {30: 1e-6}, source="symmetry", exact=True),
-            *straight,
+            # The fully anisotropic body misses the latter by 1° (docs/results.md).
+            *(silicon if name == "silicon" else []),
         ),
         quantities=QUANTITIES,
         elements=adapters.stored(f"kinks-{MATERIALS[material]}", degrees=[30.0]),
@@ -151,6 +154,7 @@ CASES = (
         "anisotropic",
         "In the fully anisotropic body the two criteria differ by up to 10°, most in mode I, and "
         "the bond model goes with the energy criterion if a cell's worth of bonds breaks at a "
-        "time. With fewer it goes along the rows of the lattice, up to 11° off.",
+        "time. With fewer it goes along the rows of the lattice, up to 11° off; with levelled cuts "
+        "it is 5° off (rms), most in mode I, where the row in which the crack lies holds it.",
     ),
 )
