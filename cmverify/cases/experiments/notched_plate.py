@@ -168,16 +168,19 @@ EVENTS = ("crack", "in the hole", "second crack", "through")
 def happened(run: Growth, m: int, n: int) -> dict[str, tuple[float, int]]:
     """Displacement (mm) and number of the solve of each of `EVENTS` that has happened.
 
-    In the hole is a crack whose path is parted all along (some bonds at the hole's edge break long
-    before it comes), through one that has parted neighbours within half of a of the right edge.
+    In the hole is a crack whose path is parted all along to where it first comes within a cell and
+    a half of the edge (some bonds there break long before it comes, others long after), through one
+    that has parted neighbours within half of a of the right edge.
     """
     parted = run.bonds.lengths(run.broken_bonds) < 1.1 * UNIT / n
     breaks, marks = run.breaks[parted], run.midpoints[parted] / UNIT
     left = marks[:, 0] < HOLE[0]
     path = from_notch(run) / UNIT
     met: list[tuple[str, NDArray[Any]]] = [("crack", np.flatnonzero(left)[m - 1 : m])]
-    if len(path) > 1 and np.hypot(*(path[-1] - HOLE)) < 2.0 + 1.5 / n:
-        away = np.hypot(*(path[:, None] - marks[None]).transpose(2, 0, 1)) < 1.0 / n
+    arrived = np.flatnonzero(np.hypot(*(path - HOLE).T) < 2.0 + 1.5 / n)
+    if len(path) > 1 and len(arrived):
+        way = path[: arrived[0] + 1]
+        away = np.hypot(*(way[:, None] - marks[None]).transpose(2, 0, 1)) < 1.0 / n
         first = [np.flatnonzero(row)[0] for row in away if row.any()]
         met.append(("in the hole", np.array([max(first)])))
     met.append(("second crack", np.flatnonzero(~left)[m - 1 : m]))

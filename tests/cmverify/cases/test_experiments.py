@@ -63,20 +63,23 @@ def test_stiffness_of_the_notched_plate_sees_one_per_cent():
     assert abs(error[0]) < 0.06
 
 
-def _parted(m: int, n: int, *rows: tuple[float, list[tuple[float, float]]]):
-    """What `notched_plate.happened` reads of a run: bonds that parted at each load, in a."""
+def _parted(m: int, n: int, *rows: tuple[float, list[tuple[float, float]]], own=(0, 1)):
+    """What `notched_plate.happened` reads of a run: bonds that parted at each load, in a.
+
+    `own` rows make the notch's path.
+    """
     marks = np.array([mark for _, row in rows for mark in row])
     loads = np.array([load for load, row in rows for _ in row])
     breaks = np.zeros(len(marks), dtype=[("step", "i8"), ("load_factor", "f8")])
     breaks["step"], breaks["load_factor"] = np.arange(len(marks)), loads
     unit = notched_plate.UNIT
-    own = CrackPath(unit * np.array([(-4.5, 1.0), *(x for _, row in rows[:2] for x in row)]))
+    path = CrackPath(unit * np.array([(-4.5, 1.0), *(x for k in own for x in rows[k][1])]))
     return SimpleNamespace(
         bonds=SimpleNamespace(lengths=lambda bonds: np.full(len(bonds), unit / n)),
         broken_bonds=np.arange(len(marks)),
         midpoints=unit * marks,
         breaks=breaks,
-        paths=[own],
+        paths=[path],
     )
 
 
@@ -100,9 +103,16 @@ def test_events_of_the_notched_plate_are_read_off_in_their_order():
     found = notched_plate.happened(run, m, n)
     assert list(found) == list(notched_plate.EVENTS)
     load, step = found["in the hole"]
-    # To a cell.
+    # To a cell and a half.
     assert load == 0.36
-    assert 0 <= len(first) + len(second) + len(reach) - 1 - step <= 1
+    assert 0 <= len(first) + len(second) + len(reach) - 1 - step <= 2
+    # What breaks at the hole's edge later is not when it came.
+    beside = [tuple(np.add(reach[-1], (0.2, 0.1)))]
+    run = _parted(
+        m, n, (0.3, first), (0.36, second + reach), (0.7, right[:5]), (1.0, beside),
+        (1.2, right[5:]), own=(0, 1, 3),
+    )  # fmt: skip
+    assert notched_plate.happened(run, m, n)["in the hole"] == (load, step)
 
 
 def test_the_bone_specimen_is_near_the_standard():
