@@ -398,7 +398,8 @@ def macrorotation(solution: State) -> Array:
 def fields(solution: State) -> dict[str, Array]:
     """What is worth writing beside the solved fields, by name, (N,) or (N, 2) arrays in SI units.
 
-    Stress components as stress11, stress22, stress12 (the mean of both shears); or the flux.
+    Stress components as stress11, stress22, stress12 (the mean of both shears), and the change of
+    temperature if one strains the body; or the flux.
     """
     return _RECOVERED[solution.physics.name](solution)
 
@@ -452,6 +453,9 @@ def _stresses(solution: State) -> dict[str, Array]:
         # Where rotations do not follow, shear on two planes is not the same.
         named["stress12_less_21"] = found[:, 0, 1] - found[:, 1, 0]
         named["couple_stress"] = couple_stress(solution)
+    warm = solution.discretisation.eigenstrain
+    if warm is not None and warm.temperature is not None:
+        named["temperature"] = warm.temperature
     return named
 
 

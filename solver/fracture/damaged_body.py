@@ -185,7 +185,9 @@ class Equilibrium:
         warm = self.sound.eigenstrain
         if warm is None:
             return None
-        return replace(warm, bonds=self.bonds, particles=factor * warm.particles)
+        change = None if warm.temperature is None else factor * warm.temperature
+        particles = factor * warm.particles
+        return replace(warm, bonds=self.bonds, particles=particles, temperature=change)
 
     def solution(self, factor: float) -> Solution:
         """The last equilibrium under `factor` times the load, for recovery."""

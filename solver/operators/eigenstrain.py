@@ -53,12 +53,15 @@ class Eigenstrain:
         ε11, ε22 and 2 ε12.
     nodes : ndarray, shape (phases, 3, nodes of the outline), optional
         Where bonds end at the surface: that of each of the body's solids.
+    temperature : ndarray, shape (N,), optional
+        The change of temperature behind it, K, for results.
     """
 
     bonds: Bonds
     moduli: Moduli
     particles: Array
     nodes: Array | None = None
+    temperature: Array | None = None
 
     def of_offset(self, o: int) -> Array:
         """e_a of the bonds of one offset, shape (strains, N)."""

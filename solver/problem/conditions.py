@@ -456,6 +456,13 @@ class Load:
             raise SceneError("a temperature that strains a body is known to statics only: f(x, y)")
         return cls("temperature", strain=strain)
 
+    def warming(self, places: Array) -> Array:
+        """Change of temperature at particles, K, shape (n,), by their places (n, 2)."""
+        if self.strain is None:
+            return np.zeros(len(places))
+        # A solid that expands by 1 a kelvin is strained by the temperature itself.
+        return np.asarray(self.strain(places, False, ExpansionTensor.isotropic(1.0))[:, 0])
+
     @classmethod
     def source(cls, source: Value, where: Where | None = None) -> Load:
         """Heat source ω, W/m³ (in electrical conduction `current` says the same)."""

@@ -288,7 +288,8 @@ def eigenstrain(
         for k, own in enumerate(solids):
             felt = sum(strain(at[surface.nodes], True, own).T for strain in acting)
             nodes[k][:, surface.nodes] = felt
-    found = Eigenstrain(operator.bonds, operator.moduli, particles, nodes)
+    warming = np.sum([item.warming(lattice.places) for item in scene.loads], axis=0)
+    found = Eigenstrain(operator.bonds, operator.moduli, particles, nodes, warming)
     load += found.load()
     if surface is not None and nodal_load is not None:
         on_particles, on_nodes = found.surface_load(surface)

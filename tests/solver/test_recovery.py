@@ -1,5 +1,7 @@
 """Stress, flux, energy and macrorotation: exact on homogeneous fields, counted bond by bond."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import assume, given
@@ -9,6 +11,7 @@ from solver import (
     ConductivityTensor,
     Crack,
     ElasticTensor,
+    ExpansionTensor,
     Family,
     Load,
     Scene,
@@ -254,6 +257,23 @@ def test_energy_density_of_homogeneous_fields():
     # The macro-potential of Eq. 115 for a homogeneous gradient is Eq. 148.
     density = recovery.strain_energy_density(heat)[deep(heat, 3)]
     np.testing.assert_allclose(density, 0.5 * gradient @ DISC @ gradient, rtol=1e-11)
+
+
+@few
+@given(masks(), st.sampled_from(["none", "volume", "extrapolated"]), st.floats(-2, 2))
+def test_the_temperature_that_strains_a_body_is_written_with_its_stress(mask, surface, slope):
+    """The sum of all, whatever they do to the body; nobody else has one."""
+    mask[2:4, 1:6] = True
+    change, more = lambda x, y: 1.0 + slope * x - y, np.arange(float(mask.sum()))
+    expands, twists = ExpansionTensor([[1.0, 0.2], [0.2, 0.5]]), ExpansionTensor([[0, 1.0], [1, 0]])
+    at = change if surface == "extrapolated" else None
+    loads = [Load.temperature(change, expands), Load.temperature(more, twists, at)]
+    held = [Support.where(lambda x, y: x == x, displacement=0.0, rotation=0.0)]
+    scene = Scene(Cells(mask, 0.5), 0.5, ElasticTensor(FIG_7), held, loads, m=2, surface=surface)
+    found = scene.solve()
+    fields = recovery.fields(found)
+    np.testing.assert_allclose(fields["temperature"], change(*found.points.T) + more, atol=1e-12)
+    assert "temperature" not in recovery.fields(replace(scene, loads=[]).solve())
 
 
 # ---- gradient -----------------------------------------------------------------------------------

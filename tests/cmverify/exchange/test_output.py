@@ -1,5 +1,6 @@
 """What is written is what was asked for, under the name that was given, over nothing."""
 
+import meshio
 import numpy as np
 import pytest
 from typer.testing import CliRunner
@@ -57,6 +58,21 @@ def said(path, *options):
     found = CliRunner().invoke(app, ["solve", str(path), *options])
     assert found.exception is None or isinstance(found.exception, SystemExit)
     return found.exit_code, found.output
+
+
+def test_a_temperature_that_strains_the_body_is_written_beside_the_stress(tmp_path):
+    warm = '[[load]]\nkind = "temperature"\nvalue = "1 + x"\nexpansion = [[1e-2, 0], [0, 2e-2]]\n'
+    path = written(tmp_path, PLATE + warm)
+    code, text = said(path, "--out", str(tmp_path / "warm"))
+    assert code == 0, text
+    kept = np.load(tmp_path / "warm.npz")
+    np.testing.assert_allclose(kept["temperature"], 1 + kept["points"][:, 0], atol=1e-12)
+    assert "stress11" in kept
+    mesh = meshio.read(tmp_path / "warm.vtu")
+    assert "temperature" in mesh.point_data
+    asked = warm + '[output]\nfields = ["temperature"]\n'
+    found = scene_file.request(written(tmp_path, PLATE + asked, "asks.toml")).run()
+    assert list(found.fields()) == ["temperature"]
 
 
 def test_fields_stresses_and_lines_are_those_that_were_asked_for(tmp_path):

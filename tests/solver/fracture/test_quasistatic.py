@@ -187,7 +187,8 @@ def test_energies_balance_with_bonds_that_end_at_the_surface(material):
 def test_energies_balance_under_temperatures(material, surface):
     """Held ends and a body that shrinks: what cooling does is work, what breaks is booked."""
     held = Support.where(lambda x, y: (x < 1) | (x > 13), displacement=0.0, rotation=0.0)
-    cold = Load.temperature(lambda x, y: -1.0 + 0.05 * y, ExpansionTensor([[1.0, 0.2], [0.2, 0.5]]))
+    change = lambda x, y: -1.0 + 0.05 * y  # noqa: E731
+    cold = Load.temperature(change, ExpansionTensor([[1.0, 0.2], [0.2, 0.5]]))
     scene = Scene(
         block(14, 9), 1.0, material, [held], [cold, Load.body_force((0.0, 1e-3))], m=2,
         surface=surface, cracks=[Crack((6.7, -1.0), (6.7, 2.2))], loose="drop",
@@ -202,6 +203,8 @@ def test_energies_balance_under_temperatures(material, surface):
     solution = run.solution
     broken = replace(scene, broken=lambda lattice, family: run.broken).solve(tolerance=1e-11)
     kept = ~run.loose
+    written = run.fields()["temperature"]
+    np.testing.assert_allclose(written, run.load_factor * change(*run.points.T), rtol=1e-12)
     np.testing.assert_allclose(
         run.load_factor * recovery.stress(broken)[kept],
         recovery.stress(solution)[kept],
