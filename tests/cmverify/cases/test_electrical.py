@@ -1,6 +1,8 @@
 """Cases of current: each kind of check holds, and sees a small change of the conductor."""
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from cmverify.cases import electrical
 from cmverify.cases.electrical import CASES, FAULTS, Strip
@@ -10,9 +12,9 @@ from cmverify.judge.verdict import judge
 STRIPS, LEADS = CASES
 
 
-def failed(case, method: str, outcome) -> set[str]:
-    """Quantities whose bounds do not hold at 20 cells."""
-    verdicts = judge(case, {method: {20: outcome}})
+def failed(case, method: str, outcome, n: int = 20) -> set[str]:
+    """Quantities whose bounds do not hold at n cells."""
+    verdicts = judge(case, {method: {n: outcome}})
     return {v.quantity for v in verdicts if not v.passed and v.kind != "order"}
 
 
@@ -26,6 +28,20 @@ def test_strips(scale, seen):
 @pytest.mark.parametrize(("scale", "seen"), [(1.0, set()), (1.01, {"drop"})])
 def test_leads_of_given_currents(scale, seen):
     assert failed(LEADS, "bond/currents", electrical.leads(False, 20, scale)) == seen
+
+
+@pytest.mark.parametrize(("scale", "seen"), [(1.0, set()), (1.01, {"drop", "limit"})])
+def test_leads_of_given_potentials(scale, seen):
+    """One per cent along the fibres moves the limit by more than its bound."""
+    outcome = electrical.leads(True, 40, scale)
+    assert failed(LEADS, "bond/potentials", outcome, 40) == seen
+
+
+@given(st.floats(0.1, 10), st.floats(-1, 1), st.floats(0.01, 1))
+def test_limits_of_known_order(limit, size, spacing):
+    """Whatever the error's size at the order 4/3."""
+    coarse, fine = (limit + size * h ** (4 / 3) for h in (2 * spacing, spacing))
+    assert electrical.corner_limit(coarse, fine) == pytest.approx(limit, abs=1e-12)
 
 
 def test_heat_and_current():
