@@ -390,8 +390,8 @@ CASES = (
                     order=OrderBand(1.0, 1.6, fitted=True),
                     source="finite elements; measured with a third as much again. The gradient "
                     "grows as r^(-1/3) at a lead's corners: order 4/3 of any uniform mesh (linear "
-                    "elements of the same size err by 0.022, 0.0096 and 0.0116, 0.0049). At the paper's "
-                    "spacing, 86 cells, 0.0034 and 0.0017",
+                    "elements of the same size err by 0.022, 0.0096 and 0.0116, 0.0049). With the "
+                    "paper's 86 cells, whose rims lie otherwise in theirs, 0.0034 and 0.0017",
                 )
                 for quantity, bounds in (
                     ("drop", {20: 0.05, 40: 0.022, 80: 0.01}),
