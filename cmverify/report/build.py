@@ -33,6 +33,10 @@ from cmverify.run.threads import child_environment
 #: Pages that other commands write beside this one, and what they hold.
 BESIDE = (
     ("stability.html", "Stability of bond models: verdicts, maps, polar plots"),
+    (
+        "materials.html",
+        "Solids of the cases: their bonds, stability, waves, kinks, and what to use",
+    ),
     ("speed.html", "Speed beside what one would otherwise use"),
     ("history.html", "The history of times and errors over the commits"),
     ("faults.html", "Faults put in on purpose: which case catches which"),

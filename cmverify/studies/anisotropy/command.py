@@ -11,6 +11,8 @@ import typer
 from cmverify.console import refuse
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from rich.console import Console
 
     from cmverify.case import Array
@@ -37,6 +39,13 @@ def material(
     m: Annotated[float, typer.Option(help="Horizon in cells.")] = 5.0,
     out: Annotated[Path | None, typer.Option(help="Figure to write, .png, .svg or .pdf.")] = None,
     json: Annotated[Path | None, typer.Option(help="File to write all numbers to.")] = None,
+    page: Annotated[
+        Path | None,
+        typer.Option(
+            help="Write materials.html to this folder, a report's; without a solid, "
+            "of all elastic solids of the cases."
+        ),
+    ] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace these files.")] = False,
 ) -> None:
     """Say what bonds make of a solid, what to expect of it, and which calibration to use."""
@@ -54,6 +63,9 @@ def material(
     given = {"--isotropic": isotropic, "--orthotropic": orthotropic, "--voigt": voigt,
              "--compliance": compliance, "SOLID": solid}  # fmt: skip
     said = {name: text for name, text in given.items() if text is not None}
+    if page is not None and not said and out is None and json is None:
+        _page_of_the_cases(page, m, density, overwrite)
+        return
     if len(said) != 1:
         refuse(f"give one solid: {', '.join(given)}")
     form, text = next(iter(said.items()))
@@ -69,6 +81,8 @@ def material(
             results.write_text(json, told + "\n")
         if out is not None:
             _figure(found, out)
+        if page is not None:
+            _page([found], page, f"{form.replace('SOLID', '')} {text}".strip(), overwrite)
     except ValueError as error:
         refuse(" ".join(str(error).split()))
     except OSError as error:
@@ -77,6 +91,32 @@ def material(
     for path in (out, json):
         if path is not None:
             console().print("wrote", str(path), soft_wrap=True)
+
+
+def _page(found: Iterable[Profile], folder: Path, said: str, overwrite: bool) -> None:
+    from cmverify.console import console
+    from cmverify.run.folder import OTHER_OUT, check_file, keep
+    from cmverify.studies.anisotropy import page
+
+    path = folder / page.NAME
+    keep([path], overwrite, OTHER_OUT.replace("--out", "--page"))
+    check_file(path)
+    command = " ".join(part for part in ("cmverify material", said, f"--page {folder}") if part)
+    console().print(f"Page: {page.write(found, command, folder)}", soft_wrap=True)
+
+
+def _page_of_the_cases(folder: Path, m: float, density: float, overwrite: bool) -> None:
+    from cmverify.studies.anisotropy.page import of_the_cases
+    from cmverify.studies.anisotropy.profile import profile
+
+    try:
+        # One after the other, after the folder has been tried.
+        solids = (profile(name, voigt, m, density) for name, voigt in of_the_cases())
+        _page(solids, folder, f"--m {m:g}", overwrite)
+    except ValueError as error:
+        refuse(" ".join(str(error).split()))
+    except OSError as error:
+        refuse(f"{error.filename or folder} cannot be written: {error.strerror or error}")
 
 
 def tensor(form: str, text: str, strain: bool, angle: float) -> Array:
@@ -159,7 +199,7 @@ def show_all(screen: Console, found: Profile) -> None:
     import numpy as np
 
     from cmverify.console import columns, show
-    from cmverify.studies.anisotropy.profile import DIRECTIONS, HORIZONS, MIXITIES, named, ripple
+    from cmverify.studies.anisotropy.profile import DIRECTIONS, HORIZONS, MIXITIES, lines, ripple
 
     rows = [[*(f"{v:.6g}" for v in row)] for row in found.voigt]
     show(screen, columns("11", "22", "12", right=("11", "22", "12")), rows, "stiffness, Pa", keys=0)
@@ -168,14 +208,7 @@ def show_all(screen: Console, found: Profile) -> None:
         screen, columns(*names, right=names), [[f"{v:.4g}" for v in found.micromoduli.values()]],
         "micromoduli of Eqs. 65–70 for a horizon of 1 m, N/m⁵", keys=0,
     )  # fmt: skip
-    rows = []
-    for one in found.assessments:
-        margins = found.margins[one.calibration, one.law]  # type: ignore[index]
-        rows.append([
-            named(one.calibration, one.law), one.kind, f"{one.margin:.3g}",
-            "none" if one.non_negative else "–" if one.kind == "unrepresentable" else "some",
-            *(_margin(value) for value in margins),
-        ])  # fmt: skip
+    rows = [[row.name, row.kind, row.margin, row.negative, *row.margins] for row in lines(found)]
     horizons = [f"m = {h}" for h in HORIZONS]
     show(
         screen,
@@ -206,9 +239,3 @@ def show_all(screen: Console, found: Profile) -> None:
     title = f"by direction (waves at {found.density:g} kg/m³)"
     show(screen, columns("direction", *numbers, right=numbers), rows, title)
     screen.print(found.advice)
-
-
-def _margin(value: float) -> str:
-    if value != value:
-        return "none"
-    return "−∞" if value == float("-inf") else f"{value:.2f}"

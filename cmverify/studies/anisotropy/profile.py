@@ -114,6 +114,39 @@ def named(calibration: str, law: str | None) -> str:
     return calibration if law is None else f"{calibration}, {law}"
 
 
+@dataclass(frozen=True)
+class Line:
+    """A calibration in a table: words and numbers as they are printed."""
+
+    name: str
+    kind: str
+    stable: bool
+    margin: str
+    negative: str
+    margins: tuple[str, ...]
+
+
+def lines(found: Profile) -> list[Line]:
+    """Every calibration and law of a solid, as tables show them."""
+    return [
+        Line(
+            named(one.calibration, one.law),
+            one.kind,
+            one.stable,
+            _spelt(one.margin, ".3g"),
+            "none" if one.non_negative else "–" if one.kind == "unrepresentable" else "some",
+            tuple(_spelt(v) for v in found.margins[one.calibration, one.law]),  # type: ignore[index]
+        )
+        for one in found.assessments
+    ]
+
+
+def _spelt(value: float, form: str = ".2f") -> str:
+    if value != value:
+        return "none"
+    return "−∞" if value == float("-inf") else f"{value:{form}}"
+
+
 def ripple(ratio: Array) -> float:
     """Largest deviation of energies from the exact ones."""
     return float(np.abs(ratio - 1.0).max())

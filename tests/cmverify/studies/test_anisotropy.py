@@ -157,4 +157,33 @@ def test_the_command_prints_draws_and_writes(tmp_path):
     assert told["margins"]["horizons"] == list(HORIZONS)
     assert (tmp_path / "a.svg").read_text(encoding="utf-8").startswith("<?xml")
     again = cli.invoke(app, given)
-    assert (again.exit_code, "exists already" in again.output) == (2, True)
+    assert (again.exit_code, "already" in again.output) == (2, True)
+
+
+def test_a_page_of_solids_beside_the_report(glass, ply, tmp_path, monkeypatch):
+    from cmverify.report.build import BESIDE
+    from cmverify.studies.anisotropy import page
+
+    assert page.NAME in dict(BESIDE)
+    # The cases' own solids take a minute.
+    monkeypatch.setattr(page, "of_the_cases", lambda: iter([("glass", glass), ("ply", ply)]))
+    monkeypatch.setattr(
+        "cmverify.studies.anisotropy.profile.profile", lambda name, found, *_: found
+    )
+    done = cli.invoke(app, ["material", "--page", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    text = (tmp_path / page.NAME).read_text(encoding="utf-8")
+    assert text.count("<img") == 2
+    assert glass.advice[:40] in text.replace("&#39;", "'")
+    assert "cmverify material --m 5 --page" in text
+    assert len(text) < 1_000_000
+    again = cli.invoke(app, ["material", "--page", str(tmp_path)])
+    assert (again.exit_code, "already" in again.output) == (2, True)
+
+
+def test_the_solids_of_the_cases_are_solids():
+    from cmverify.studies.anisotropy.page import of_the_cases
+
+    solids = dict(of_the_cases())
+    assert set(materials.TENSORS) < set(solids)
+    assert all(np.linalg.eigvalsh(voigt).min() > 0 for voigt in solids.values())
