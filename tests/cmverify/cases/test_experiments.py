@@ -6,8 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from cmverify.case import Measurement
 from cmverify.cases.experiments import CASES, bone, inclusion, notched_plate, pair
 from cmverify.cases.experiments.running import unmirrored
+from cmverify.judge.verdict import judge
 from cmverify.report.stages import stages_figure
 from cmverify.run.results import Record, load, save
 from solver.fracture.crack_path import CrackPath
@@ -143,6 +145,19 @@ def test_a_pair_of_cracks_breaks_alike_under_half_a_turn(offset):
     assert pair._turned(run) == 0
     run.bonds.broken.add(np.flatnonzero(run.bonds.strengths.ravel())[:1], 99, 1.0, False)
     assert pair._turned(run) == 1
+
+
+def test_a_direction_within_its_sector_is_not_too_good_to_be_true():
+    """It is nought degrees beyond, which no error of a method would be."""
+    case = next(case for case in CASES if case.name == "bone-compact-tension")
+    for beyond, holds in ((0.0, True), (9.4, True), (9.6, False)):
+        quantities = dict.fromkeys(case.quantities, 0.0) | {"beyond the fibres": beyond}
+        found = {3: Measurement(1, quantities, {"solve": 1.0})}
+        verdicts = judge(case, {"ζ = 45°": found})
+        (own,) = [
+            v for v in verdicts if v.quantity == "beyond the fibres" and v.method == "ζ = 45°"
+        ]
+        assert own.passed == holds
 
 
 def test_every_method_of_an_experiment_is_judged():
