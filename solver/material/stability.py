@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, fields
+from functools import lru_cache
+from typing import Any, Literal
 
 import numpy as np
 from scipy.optimize import minimize
@@ -55,7 +56,30 @@ def assess(family: Family, moduli: Moduli, count: int = 32) -> Stability:
     Returns
     -------
     Stability
+        Kept for the next bodies of the same solid: a study has many.
     """
+    return _assessed(_Solid(family, moduli), count)
+
+
+class _Solid:
+    """Moduli on a family, equal to others by their numbers."""
+
+    def __init__(self, family: Family, moduli: Moduli) -> None:
+        self.family, self.moduli = family, moduli
+        given: Any = moduli
+        numbers = (np.asarray(getattr(given, item.name)).tobytes() for item in fields(given))
+        self._key = (family, type(moduli), *numbers)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Solid) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+
+@lru_cache(maxsize=256)
+def _assessed(solid: _Solid, count: int) -> Stability:
+    family, moduli = solid.family, solid.moduli
     bulk = BulkSymbol(family, moduli)
     spectrum = np.linalg.eigvalsh(bulk.tensor)
     if not spectrum[0] > _SINGULAR * np.abs(spectrum).max():

@@ -283,3 +283,21 @@ def test_sums_that_are_not_positive_definite_are_inadmissible():
         assert found.margin < 0
         with pytest.raises(InadmissibleMaterialError, match="releases energy"):
             require_admissible(family, moduli)
+
+
+SOME = {"E1": 10.0, "E2": 5.0, "G12": 2.0, "nu12": 0.2}
+
+
+def test_what_is_known_of_a_solid_is_found_by_its_numbers():
+    def found(spacing=1.0, **numbers):
+        family = Family(3, spacing)
+        return assess(family, calibrate(family, ElasticTensor.orthotropic(**{**SOME, **numbers})))
+
+    first = found()
+    assert found() is first  # other objects, the same numbers
+    for other in (found(E1=11.0), found(spacing=0.5)):
+        assert other is not first
+    moduli = calibrate(Family(3), ElasticTensor.isotropic(1.0, 0.2))
+    before = assess(Family(3), moduli)
+    moduli.shear[:] = 0.0  # nobody should, and nobody is told what was true before
+    assert assess(Family(3), moduli).kind == "central" != before.kind
