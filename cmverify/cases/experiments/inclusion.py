@@ -28,14 +28,14 @@ levelled m = 5 goes straight on at 12°). All of a cell's bonds at once, which d
 harder than it needs, follow at 12° with m = 5. So a path is independent of the batch where it
 leaves the rows by more than the angle that they hold: that takes a larger m, or a lattice turned
 against the crack (an isotropic crack at 22.5° to the rows runs along one with m = 3 and is 3.3°
-off with m = 5). A finer lattice and levelled cuts do not make it so, and here m = 7 (a/84, the
-same horizon) is not enough either: led by small batches its tips end 0.024 a above their height
-(60 CPU s).
+off with m = 5). Here neither m nor the spacing is enough: small batches end one cell above their
+height at a/60 and at a/120 (77 CPU s), two with m = 7 at a/84, where all at once ends 0.083,
+0.042 and 0.083 a below it at a/60, a/120 and a/240 (there with branches: six tips).
 
 Steps are ten times as large on lattices coarser than a/60.
 
 Measured (u* in ū of the first bond and of a crack): steps 0.605 and 0.63 at a/60, 0.735 and 0.755
-at a/120, 0.970 and 0.975 at a/240 (paper 0.992: −1.7 %; 72 CPU s, no bond without its image); at
+at a/120, 0.970 and 0.975 at a/240 (paper 0.992: −1.7 %; 58 CPU s, no bond without its image); at
 a/60 a crack appears at 0.6275 with adaptive steps, 0.565 `extrapolated`, 0.485 where the grip
 holds a horizon, 0.61 where it is free to slide.
 """
