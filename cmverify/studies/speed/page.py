@@ -12,6 +12,8 @@ from cmverify.report.picture import Picture
 from cmverify.run.results import write_text
 
 NAME = "speed.html"
+#: Columns that a page is wide enough for.
+ROOM = 9
 
 
 def write(document: Mapping[str, Any], verdicts: Sequence[Verdict], image: Path) -> Path:
@@ -64,8 +66,13 @@ def write(document: Mapping[str, Any], verdicts: Sequence[Verdict], image: Path)
 
 def _table(title: str, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     columns = list(dict.fromkeys(name for row in rows for name in row["values"]))
-    lines = [(row["name"], [_cell(row["values"].get(c)) for c in columns]) for row in rows]
-    return {"title": title, "columns": [c.replace("_", " ") for c in columns], "rows": lines}
+    parts = -(-len(columns) // ROOM)
+    size = -(-len(columns) // parts)
+    blocks = []
+    for part in (columns[k : k + size] for k in range(0, len(columns), size)):
+        lines = [(row["name"], [_cell(row["values"].get(c)) for c in part]) for row in rows]
+        blocks.append({"columns": [c.replace("_", " ") for c in part], "rows": lines})
+    return {"title": title, "blocks": blocks}
 
 
 def _cell(value: Any) -> str:

@@ -179,7 +179,7 @@ def polar(found: Polar) -> Figure:
         right: Any = figure.add_subplot(1, 2, 2, projection="polar")
         left.plot(found.psi, found.axial, color=style.BLUE, label="$\\hat{C}_{1111}$")
         left.plot(found.psi, found.shear, color=style.ORANGE, label="$\\hat{C}_{1212}$")
-        left.set_title(f"macromoduli of {found.solid}", pad=14)
+        left.set_title(f"macromoduli of {found.solid}", y=1.08)
         for values, colour, label in (
             (found.kn, style.BLUE, "$k_n$, Eq. 48"),
             (found.kt, style.ORANGE, "$k_t$, Eq. 49"),
@@ -196,7 +196,7 @@ def polar(found: Polar) -> Figure:
                 look["markerfacecolor"] = "none"
             right.plot(angle, np.abs(kn), color=style.BLUE, label=f"{name} bonds", **look)
             right.plot(angle, np.abs(kt), color=style.ORANGE, **look)
-        right.set_title("micromoduli", pad=14)
+        right.set_title("micromoduli", y=1.08)
         for axis in (left, right):
             axis.set_rlabel_position(112)
             axis.tick_params(labelsize=8)

@@ -1,12 +1,14 @@
 """The page as a browser shows it: nothing sticks out, links lead somewhere, all can read it."""
 
 import re
+from dataclasses import replace
 
 import pytest
 
 from cmverify.case import Failed
-from cmverify.report import pages, summary
+from cmverify.report import crosscheck_chapter, pages, summary
 from cmverify.report.build import build
+from cmverify.studies.crosscheck import Row
 from tests.cmverify.report import browser
 from tests.cmverify.report.test_build import INFO, records
 from tests.cmverify.toy_registry import toy, trapezium
@@ -18,10 +20,15 @@ needs_chromium = pytest.mark.skipif(
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
-    """A failing run: a figure that is wrong, a crash with a long message, a long traceback."""
+    """A failing run: a figure that is wrong, a crash with a long message, a cross-check, too."""
     failed = Failed("ArithmeticError", "no <luck> " * 40, "in a_very_long_name_of_a_function" * 30)
     judged = summary.summarise([toy()], records({10: trapezium(10, 1.01), 20: failed}))
-    return build(judged, INFO, tmp_path_factory.mktemp("page"))
+    folder = tmp_path_factory.mktemp("page")
+    row = Row("toy", "a long name of a problem", "conduction of a strained body", 2, 9, 30, 1e-14,
+              1e-3, "error", 1e-3, 1e-3, 1e-4)  # fmt: skip
+    rows = [row, replace(row, difference=0.5), Row("gone", "another", failure="no <luck> " * 40)]
+    crosscheck_chapter.write(crosscheck_chapter.CrossCheck(rows, "dolfinx", "", "now"), folder)
+    return build(judged, INFO, folder)
 
 
 @needs_chromium

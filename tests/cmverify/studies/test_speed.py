@@ -127,7 +127,9 @@ def test_the_page_has_every_table_and_what_must_hold(tmp_path) -> None:
     image.write_bytes(b"\x89PNG")
     (tmp_path / "speed.json").write_text("{}")
     machine = {"processor": "p", "cores": 2, "python": "3", "commit": ""}
-    tables = {"Growth <x>": [{"name": "a/30", "values": {"us_per_particle": 1.2345, "n": 7}}]}
+    many = {f"a long name {k}": 1.2345 for k in range(10)}
+    tables = {"Growth <x>": [{"name": "a/30", "values": {"us_per_particle": 1.2345, "n": 7}}],
+              "Many": [{"name": "hole", "values": many}]}  # fmt: skip
     document = {"level": "standard", "machine": machine, "tables": tables, "command": "again"}
     bounds = [verdicts._at_least("k: gain", 1.0, 2.0), verdicts._at_most("k: error", 0.5, 1.0)]
     written = page.write(document, bounds, image)
@@ -136,3 +138,6 @@ def test_the_page_has_every_table_and_what_must_hold(tmp_path) -> None:
     for part in ("1 of 2 bounds hold", "Growth &lt;x&gt;", "us per particle", "1.23", "≥ 2"):
         assert part in text
     assert text.index("≥ 2") < text.index("≤ 1"), "what fails comes first"
+    # Ten columns are two tables of five.
+    assert text.count('aria-label="Many"') == 2
+    assert text.count("a long name") == 10
