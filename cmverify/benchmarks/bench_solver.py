@@ -79,6 +79,41 @@ class StrongAnisotropy:
     track_iterations.unit = "iterations"  # type: ignore[attr-defined]
 
 
+class SmallProblem:
+    """Heat on a body too small for a second thread."""
+
+    params = (1, 2)
+    param_names = ("threads at hand",)
+
+    def setup(self, threads: int) -> None:
+        """Compile, and keep the problem; skipped where there are fewer threads."""
+        import numba
+
+        from cmverify.studies.speed.scenes import static_scenes
+
+        if threads > numba.config.NUMBA_NUM_THREADS:
+            raise NotImplementedError
+        self.problem = static_scenes(100)["heat, isotropic"].discretise()
+        self.track_cpu_seconds(threads)
+
+    def track_cpu_seconds(self, threads: int) -> float:
+        """CPU seconds of all threads for a solve."""
+        import numba
+
+        from solver.analyses.statics import solve
+
+        before = numba.get_num_threads()
+        numba.set_num_threads(threads)
+        try:
+            begun = process_time()
+            solve(self.problem, 1e-8)
+            return process_time() - begun
+        finally:
+            numba.set_num_threads(before)
+
+    track_cpu_seconds.unit = "s"  # type: ignore[attr-defined]
+
+
 class VCycle:
     """One application of the two-level preconditioner, in single and in double precision."""
 

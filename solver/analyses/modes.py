@@ -16,6 +16,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import LinearOperator
 
+from .. import threads
 from ..arrays import Array, Mask
 from ..blas import one_thread
 from ..bonds import Cells
@@ -197,7 +198,7 @@ def solve(
             f"them, are found on bodies of up to {_DENSE_MOST} only"
         )
     small |= count > _MOST
-    with one_thread():
+    with one_thread(), threads.suited(discretisation.operator):
         search = _Search(discretisation, mass, rigid, count, tolerance)
         pairs, checked, prepared = (
             search.directly() if small else search.iteratively(begun, progress)

@@ -8,6 +8,7 @@ from time import perf_counter
 import numpy as np
 from scipy.sparse.linalg import LinearOperator
 
+from .. import threads
 from ..arrays import Array
 from ..blas import one_thread
 from ..errors import ConvergenceError
@@ -59,7 +60,7 @@ def solve(
         raise ValueError(f"the tolerance must lie between 0 and 1, not {tolerance}")
     begun = perf_counter()
     operator, kind = discretisation.operator, discretisation.stability.kind
-    with one_thread():
+    with one_thread(), threads.suited(operator):
         rhs = discretisation.right_hand_side()
         start = _start(discretisation, previous)
         border = None if discretisation.constraints is None else border_of(discretisation)

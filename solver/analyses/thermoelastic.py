@@ -23,7 +23,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from .. import recovery
+from .. import recovery, threads
 from ..arrays import Array, Indices
 from ..blas import one_thread
 from ..bonds import Cells
@@ -186,7 +186,7 @@ def run(
         evaluate(velocity, body.lattice.places, 2, "the initial velocity"),
         evaluate(temperature, body.lattice.places, 1, "the initial temperature"),
     ]
-    with one_thread():
+    with one_thread(), threads.suited(body.operator):
         march = _March(body, warm, expansion, reference, step, density)
         return march.go(steps, *given)
 

@@ -27,6 +27,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .. import threads
 from ..arrays import Array
 from ..blas import one_thread
 from ..bonds import Cells
@@ -227,7 +228,7 @@ def run(
     marching = _March(body, scene, initial, wanted, start, tolerance, step)
     marching.record(probes, series, checkpoint, every)
     setup = perf_counter() - begun
-    with one_thread():
+    with one_thread(), threads.suited(body.operator):
         marching.go(progress)
     return marching.result(setup, perf_counter() - begun - setup)
 

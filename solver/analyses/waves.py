@@ -27,6 +27,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .. import threads
 from ..arrays import Array
 from ..blas import one_thread
 from ..bonds import Cells
@@ -246,7 +247,7 @@ def run(
         scene, end, times, start, step, courant, scheme, rotations, damping, tolerance
     )
     body = Discretisation.of(scene.at(start), free=True)
-    with one_thread():
+    with one_thread(), threads.suited(body.operator):
         motion = Motion(body, scene, initial, velocity, settings)
         motion.record(probes, series, checkpoint, every)
         setup = perf_counter() - begun

@@ -15,6 +15,7 @@ from typing import Protocol
 import numpy as np
 from scipy.sparse.linalg import LinearOperator
 
+from .. import threads
 from ..arrays import Array, Indices, Mask
 from ..blas import one_thread
 from ..bonds import Bonds
@@ -397,7 +398,7 @@ class Equilibrium:
         """
         begun = perf_counter()
         tolerance = self.tolerance if tolerance is None else tolerance
-        with one_thread():
+        with one_thread(), threads.suited(self._operator):
             operator = self.operator
             if self.rhs is None:
                 unmoved = self._before_masters()

@@ -26,6 +26,7 @@ from threadpoolctl import threadpool_limits
 
 from cmverify.case import Array
 from cmverify.cases.crack_tip import STIFFNESS
+from cmverify.studies.speed import peers
 from cmverify.studies.speed.scenes import crack_tip, kernel_scenes, static_scenes
 from references.analytic import lekhnitskii
 from solver import Discretisation
@@ -266,13 +267,13 @@ def solvers(resolution: int = 120, tolerance: float = 1e-8, repeats: int = 3) ->
     """The whole static solve against assembled alternatives, to the same residual.
 
     Set-up and assembly are included, compilation is not. PARDISO (`pypardiso`, extra ``bench``)
-    appears where it is installed.
+    and algebraic multigrid (`peers`) appear where they are installed.
 
     Returns
     -------
     list of Timing
         Values: ``cpu_s`` (all threads), ``wall_s``, ``slower`` (CPU seconds over the bond
-        solver's), ``iterations``, ``residual``.
+        solver's), ``iterations``, ``residual``; of multigrid also the ratio without its assembly.
     """
     scene = crack_tip(resolution)
     scene.solve(tolerance)
@@ -299,7 +300,21 @@ def solvers(resolution: int = 120, tolerance: float = 1e-8, repeats: int = 3) ->
     with threadpool_limits(limits=1, user_api="blas"):
         rows.append(_scipy_cg(problem, tolerance, base))
         other = _pardiso(problem, base)
-    return rows + ([other] if other else [])
+        rows += [other] if other else []
+        for run in peers.runs(problem, tolerance):
+            rows.append(
+                _row(
+                    run.name,
+                    run.assembly + run.solving,
+                    run.wall,
+                    base,
+                    iterations=run.iterations,
+                    residual=_residual(problem, run.x, problem.right_hand_side()),
+                    assembly_s=run.assembly,
+                    **{"matrix given ÷ ours": run.solving / base},
+                )
+            )
+    return rows
 
 
 def _scipy_cg(problem: Discretisation, tolerance: float, base: float) -> Timing:

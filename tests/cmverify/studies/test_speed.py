@@ -1,10 +1,14 @@
 """The speed study: what it measures is right, and its verdicts can fail. No test asserts time."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from cmverify.studies.speed import measure, modes, page, verdicts
+from cmverify.studies.speed import measure, modes, page, peers, verdicts
 from cmverify.studies.speed.measure import Timing
+from cmverify.studies.speed.scenes import crack_tip
+from solver import Discretisation
 from tests.cmverify.report import browser
 
 
@@ -23,6 +27,22 @@ def test_alternative_solvers_reach_the_same_residual() -> None:
     assert rows[0].name == "bond solver, two-level CG, 1 thread"
     assert "SciPy CG, block Jacobi, CSR" in [row.name for row in rows]
     assert all(row.values["residual"] <= 1.01e-8 for row in rows)
+
+
+def test_peers_know_the_rigid_motions_and_solve_the_same_system() -> None:
+    problem = crack_tip(20).discretise()
+    free = Discretisation.of(replace(crack_tip(12), supports=[]), free=True).operator
+    modes = peers.rigid_modes(free)
+    order = np.arange(free.shape[0]).reshape(3, -1).T.ravel()
+    for mode in modes.T:
+        x = np.empty_like(mode)
+        x[order] = mode
+        strained = free.matvec(np.cos(x / np.abs(x).max()) * np.abs(x).max())
+        assert np.abs(free.matvec(x)).max() < 1e-12 * np.abs(strained).max()
+    rhs = problem.right_hand_side()
+    for run in peers.runs(problem, 1e-8):
+        assert np.linalg.norm(problem.operator.matvec(run.x) - rhs) <= 2e-8 * np.linalg.norm(rhs)
+        assert 0 < run.iterations < 60
 
 
 def test_iterations_on_all_static_scenes() -> None:
