@@ -91,7 +91,7 @@ class SmallProblem:
 
         from cmverify.studies.speed.scenes import static_scenes
 
-        if threads > numba.config.NUMBA_NUM_THREADS:
+        if threads > numba.get_num_threads():
             raise NotImplementedError
         self.problem = static_scenes(100)["heat, isotropic"].discretise()
         self.track_cpu_seconds(threads)

@@ -58,7 +58,11 @@ def speed(
         # First, because peak memory only grows.
         ("Growth", lambda: measure.growth(_LADDER[level]), verdicts.of_growth),
         ("Static scenes", lambda: measure.scenes(resolution), verdicts.of_scenes),
-        ("V-cycle", lambda: measure.preconditioner(resolution), verdicts.of_preconditioner),
+        (
+            "V-cycle",
+            lambda: measure.preconditioner(resolution),
+            lambda rows: verdicts.of_preconditioner(rows, ratios=judged),
+        ),
         ("Surface treatments", lambda: measure.surfaces(resolution), verdicts.of_surfaces),
         (
             "Product with the stiffness",
