@@ -43,6 +43,7 @@ def residual(parts: Discretisation, unknowns: Array) -> Array:
     opened = np.zeros_like(parts.prescribed)
     opened[:, aside] = True
     operator = BondOperator(parts.bonds, parts.moduli, opened)
+    operator.calibrate_tips(parts.operator.tips)
     given = np.nan_to_num(unknowns)
     found = np.zeros_like(parts.load)
     rows = operator.product(given[:, operator.active]) - parts.load[:, operator.active]

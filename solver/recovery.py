@@ -341,8 +341,9 @@ def strain_energy_density(solution: State) -> Array:
     """Macroelastic energy density W of each particle (Eq. 11), shape (N,), J/m³.
 
     Each bond gives half its energy to either end; one that ends at the surface as much as if it
-    were whole, so that a homogeneous strain has its density right up to the edge. In conduction
-    the macro-potential of Eq. 115.
+    were whole, so that a homogeneous strain has its density right up to the edge; what a calibrated
+    tip adds, which can be negative, is spread over its particles. In conduction the macro-potential
+    of Eq. 115.
     """
     body = solution.discretisation
     moduli, length = body.moduli, body.moduli.pair_length(body.family)
@@ -355,6 +356,9 @@ def strain_energy_density(solution: State) -> Array:
         o = ends.offset
         density = length[o] * (moduli.of_bonds(o, ends.phase) * ends.strains**2).sum(axis=0)
         ends.add(0.25 * ends.weight * ends.strength * density, result)
+    for tip in body.operator.tips:
+        energy = tip.energy(solution.unknowns[:, tip.particles])
+        result[tip.particles] += energy / len(tip.particles)
     return _aside(solution, _per_volume(solution, result))
 
 

@@ -114,6 +114,34 @@ class SmallProblem:
     track_cpu_seconds.unit = "s"  # type: ignore[attr-defined]
 
 
+class CalibratedTip:
+    """Crack tip, mode I, with a calibrated tip at half the resolution; and the calibration."""
+
+    params = (30, 60)
+    param_names = ("a over spacing",)
+    timeout = 120.0
+
+    def setup(self, resolution: int) -> None:
+        """Compile, calibrate, and keep the scene."""
+        from dataclasses import replace
+
+        from cmverify.studies.speed.scenes import crack_tip
+
+        self.scene = replace(crack_tip(resolution), surface="extrapolated", tip="calibrated")
+        self.scene.solve(1e-8)
+
+    def time_solve(self, resolution: int) -> None:
+        """Seconds from the scene to the solution, the calibration known."""
+        self.scene.solve(1e-8)
+
+    def time_calibration(self, resolution: int) -> None:
+        """Seconds of the same with the calibration."""
+        from solver.tips import calibration
+
+        calibration._calibrated.cache_clear()
+        self.scene.solve(1e-8)
+
+
 class VCycle:
     """One application of the two-level preconditioner, in single and in double precision."""
 

@@ -100,6 +100,11 @@ class Discretisation(Table):
     area_rule: Literal["full", "partial", "exact"] = "partial"
     influence: Literal["constant", "conical", "gaussian"] = "constant"
     surface: Literal["none", "volume", "extrapolated"] = "volume"
+    tip: Literal["drawn", "calibrated"] = Field(
+        default="drawn",
+        description="Whether the stiffness around tips of cracks is calibrated to their fields "
+        "(statics, surface = extrapolated)",
+    )
     law: Literal["cosine", "two-harmonic", "fourfold", "uniform-shear"] | None = Field(
         default=None, description="How bond moduli depend on direction"
     )

@@ -2,5 +2,6 @@
 
 from .bond_operator import BondOperator
 from .surface_stiffness import SurfaceStiffness
+from .tip_stiffness import TipStiffness
 
-__all__ = ["BondOperator", "SurfaceStiffness"]
+__all__ = ["BondOperator", "SurfaceStiffness", "TipStiffness"]

@@ -47,6 +47,12 @@ def to_csr(operator: BondOperator) -> sparse.csr_array:
         matrix = sparse.csr_array(
             matrix + operator.ended_stiffness.condensed(operator.surface_basis())
         )
+    for at, tip in zip(operator.at_tips, operator.tips, strict=True):
+        here = (np.arange(c)[:, None] * count + at).ravel()
+        pick = sparse.csr_array(
+            (np.ones(len(here)), (np.arange(len(here)), here)), shape=(len(here), c * count)
+        )
+        matrix = sparse.csr_array(matrix + pick.T @ sparse.csr_array(tip.matrix) @ pick)
     if operator.identity_rows is not None:
         free = sparse.diags_array((~operator.identity_rows).ravel().astype(np.float64))
         identity = sparse.diags_array(operator.identity_rows.ravel() * operator.identity_scale)

@@ -30,6 +30,7 @@ from ..material.physics import Physics
 from . import thickness
 from .conditions import Load, Support
 from .inclusions import Inclusion, check
+from .tips import Tip, check_tip
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,10 @@ class Description:
     inclusions : sequence of Inclusion
         Parts of the body that are of other solids, bonded to the rest. Bonds end at the
         interfaces, whose nodes both sides share, with every treatment of surfaces.
+    tip : {"drawn", "calibrated"}
+        Whether the stiffness around tips of cracks is calibrated to their singular fields
+        (`solver.tips`): of statics of elastic bodies with ``extrapolated`` surfaces, whose cracks
+        do not grow. A tip too near to something else stays as drawn, with a warning.
     thickness : number or function of (x, y), optional
         m; see `solver.problem.thickness`. Without it, and without any of an inclusion, everything
         is per unit thickness; with it forces, energies and currents are those of the body.
@@ -107,6 +112,7 @@ class Description:
     factors: Callable[[Bonds, Moduli], Factors] | None = None
     inclusions: Sequence[Inclusion] = ()
     thickness: float | Callable[..., Any] | None = None
+    tip: Tip = "drawn"
 
     def __post_init__(self) -> None:
         check_surface(self.surface)
@@ -146,6 +152,7 @@ class Description:
                 raise SceneError(f"a {load.kind} does not act on {self.physics.adjective} body")
         check(self)
         thickness.check(self)
+        check_tip(self)
 
     @property
     def physics(self) -> Physics:

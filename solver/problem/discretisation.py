@@ -17,7 +17,7 @@ from ..geometry import Lattice
 from ..material import Family, Moduli, Stability
 from ..operators import BondOperator
 from ..operators.eigenstrain import Eigenstrain
-from . import cautions, inclusions, leads, loading, mechanisms, thickness
+from . import cautions, inclusions, leads, loading, mechanisms, thickness, tips
 from . import constraints as constraints_of
 from .conditions import particle_volumes
 from .constraints import Constraints
@@ -54,6 +54,8 @@ class Discretisation:
         `load` without what temperatures exert, where there are any.
     edge_values : ndarray, shape (components, nodes of the outline), optional
         Values at which nodes are held, if others than those of the bonds: at another time.
+    tips_left : tuple of str
+        Why some tips of cracks are not calibrated, one sentence each.
     """
 
     scene: Description
@@ -72,6 +74,7 @@ class Discretisation:
     eigenstrain: Eigenstrain | None = None
     acting: Array | None = None
     edge_values: Array | None = None
+    tips_left: tuple[str, ...] = ()
 
     @classmethod
     def of(
@@ -121,6 +124,7 @@ class Discretisation:
                 "temperatures that strain a body (Load.temperature) are known to statics and "
                 "quasi-static fracture only"
             )
+        tips.require_static(scene, sharp_tips, constrained, stability)
         lattice = Lattice(scene.region, scene.spacing, family.reach, scene.phase)
         cracks = loading.centred_cracks(scene.cracks, lattice)
         phases = inclusions.phases_of(scene, lattice)
@@ -183,6 +187,7 @@ class Discretisation:
             prescribed[:, loose] = True
             values[:, loose] = np.nan
             broken = mechanisms.without(bonds, broken, loose)
+        left = tips.calibrate(scene, operator, prescribed)
         nodal_load = loading.share_out(on_edges, lattice, operator, load)
         loading.concentrate(scene, lattice, cracks, operator, load, nodal_load)
         if load[:, aside].any():
@@ -210,6 +215,7 @@ class Discretisation:
             constraints,
             eigenstrain,
             acting,
+            tips_left=left,
         )
 
     @property
@@ -264,6 +270,7 @@ class Discretisation:
                 *cautions.thin_layers(lattice, given, scene.m),
                 *cautions.thin_members(lattice, scene.m, scene.surface),
                 *leads.cautions(scene, lattice),
+                *self.tips_left,
             )
         )
 
