@@ -9,6 +9,7 @@ they are two, with whatever places in their cells, and with all higher terms of 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -33,6 +34,7 @@ ANGLES = {"along rows": 0.0, "27°": float(np.radians(27.0))}
 #: σ22, σ12 and σ11 far away, in the crack's axes.
 REMOTE = (1.0, 0.5, -1.0)
 M = 3
+Ladder = Mapping[Level, tuple[int, ...]]
 #: The ring in which stress intensity factors are measured.
 RING = 0.45
 
@@ -121,9 +123,9 @@ def measure(problem: Problem, tip: Tip, n: int) -> Measurement:
     )
 
 
-LADDER = {Level.QUICK: (30,), Level.STANDARD: (30, 60), Level.PAPER: (30, 60, 120)}
+LADDER: Ladder = {Level.QUICK: (30,), Level.STANDARD: (30, 60), Level.PAPER: (30, 60, 120)}
 #: Of the others: the quick level has no time for them.
-BESIDE = {level: ladder for level, ladder in LADDER.items() if level != Level.QUICK}
+BESIDE: Ladder = {level: ladder for level, ladder in LADDER.items() if level != Level.QUICK}
 MEASURED = "closed form of Lekhnitskii; measured with half as much again"
 
 
