@@ -154,7 +154,7 @@ def _case() -> Case:
         title="Finite crack, both modes and a stress along it",
         section="Sect. 2.3.1 (crack problems)",
         equations=("Eqs. 79–83",),
-        tags=("crack-tip", "elasticity", "fracture"),
+        tags=("elasticity", "fracture"),
         shows=(
             "Tips that were calibrated on their singular fields make the error several times "
             "smaller on a problem that the calibration did not see."
