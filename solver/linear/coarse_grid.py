@@ -70,13 +70,12 @@ class CoarseGrid:
             return cls((coarsening, 0), (0, coarsening), shape)
         along, across = _STRETCH[operator.components]
         length = along * coarsening * max(1.0, np.sqrt(energy[1]))
-        strong = np.array([weak[1], -weak[0]])
-        # Anticlockwise from it to the next row.
-        strong = strong if strong[np.abs(strong).argmax()] > 0 else -strong
-        x, y = _whole_vector(strong, length)
+        x, y = _whole_vector(np.array([weak[1], -weak[0]]), length)
         # Across, a vector along rows or columns does: what counts is how far the rows of nodes are
-        # apart.
+        # apart. Anticlockwise to it, by the whole vector: it decides which of the two it is.
         steep = abs(y) > abs(x)
+        if (y if steep else x) < 0:
+            x, y = -x, -y
         share = abs(weak[0 if steep else 1])
         step = max(1, round(across * coarsening * np.sqrt(energy[0]) / share))
         if not x:

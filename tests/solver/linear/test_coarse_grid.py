@@ -20,7 +20,7 @@ def _scene(material: ConductivityTensor, cells: int = 24) -> Scene:
     return Scene(disc(1.0), 1 / cells, material, [layer], calibration="positive")
 
 
-@pytest.mark.parametrize("angle", np.linspace(-1.5, 1.6, 9))
+@pytest.mark.parametrize("angle", [*np.linspace(-1.5, 1.6, 9), np.pi / 4, -np.pi / 4, 2.355])
 def test_nodes_lie_far_apart_along_the_strong_axis_and_close_across(angle):
     operator = _scene(_turned(60.0, angle)).discretise().operator
     grid = CoarseGrid.of(operator, 6)
