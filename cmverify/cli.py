@@ -157,7 +157,9 @@ def run(
     jobs: Annotated[int, typer.Option(help="Worker processes; 0 for one a core.")] = 0,
     out: Folder = Path("report"),
     resume: Annotated[bool, typer.Option("--resume", help="Keep finished measurements.")] = False,
-    timeout: Annotated[float, typer.Option(help="Seconds for a single measurement.")] = 3600.0,
+    timeout: Annotated[
+        float | None, typer.Option(help="Seconds for a single measurement; 3600 by default.")
+    ] = None,
     json: Annotated[Path | None, typer.Option(help="Write all numbers to this file.")] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace that file.")] = False,
     cross_check: Annotated[
@@ -175,6 +177,10 @@ def run(
     cases = _select(names)
     if jobs < 0:
         refuse(f"--jobs {jobs}: at least one worker is needed")
+    if dask is not None and (jobs or timeout is not None):
+        option = "--jobs" if jobs else "--timeout"
+        refuse(f"{option}: a cluster's workers are as many as they are, and end no measurement")
+    timeout = 3600.0 if timeout is None else timeout
     if not timeout > 0:
         refuse(f"--timeout {timeout:g}: a measurement needs some time")
     try:

@@ -357,8 +357,8 @@ def strain_energy_density(solution: State) -> Array:
         density = length[o] * (moduli.of_bonds(o, ends.phase) * ends.strains**2).sum(axis=0)
         ends.add(0.25 * ends.weight * ends.strength * density, result)
     for tip in body.operator.tips:
-        energy = tip.energy(solution.unknowns[:, tip.particles])
-        result[tip.particles] += energy / len(tip.particles)
+        added = tip.energy(solution.unknowns[:, tip.particles])
+        result[tip.particles] += added / len(tip.particles)
     return _aside(solution, _per_volume(solution, result))
 
 

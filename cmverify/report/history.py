@@ -80,10 +80,12 @@ def read(folder: Path) -> list[Series]:
         if data.get("version") != VERSION:
             raise ValueError(f"{path} is not of asv's version {VERSION}")
         when = (float(data["date"]), str(data["commit_hash"])[:8])
+        # Environments are series of their own: another Python is no other commit.
+        where = " · ".join(filter(None, (path.parent.name, str(data.get("env_name", "")))))
         for name, entry in data["results"].items():
             row = dict(zip(data["result_columns"], entry, strict=False))
             for parameters, value in _values(row):
-                found.setdefault((path.parent.name, name, parameters), {})[when] = value
+                found.setdefault((where, name, parameters), {})[when] = value
     if not found:
         raise ValueError(f"{folder} holds no results of asv: asv run HEAD^!")
     return [
@@ -135,7 +137,7 @@ def write(series: Sequence[Series], command: str, folder: Path) -> Path:
             contents=[(f"b{k}", s["name"]) for k, s in enumerate(sections, 1)],
             sections=sections,
             commits=len(commits),
-            machines=len({s.machine for s in series}),
+            machines=len({s.machine.split(" · ")[0] for s in series}),
             command=command,
         )
     )

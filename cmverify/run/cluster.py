@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import platform
 import threading
+import uuid
 from collections.abc import Callable, Iterator, Mapping
 from importlib.util import find_spec
 from pathlib import Path
@@ -54,8 +55,10 @@ def done_on(
     """
     from distributed import as_completed as finished
 
+    # Dask takes tasks of one name for one: those of another folder or run are others.
+    mark = uuid.uuid4().hex
     tasks = {
-        client.submit(function, *given, key=f"cmverify-{key}", retries=RETRIES): key
+        client.submit(function, *given, key=f"cmverify-{mark}-{key}", retries=RETRIES): key
         for key, given in todo.items()
     }
     for task in finished(list(tasks)):

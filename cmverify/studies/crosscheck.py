@@ -71,7 +71,7 @@ class Row:
             return False
         falls = True
         if self.theirs is not None and self.finer is not None:
-            falls = self.finer < self.theirs
+            falls = self.finer < max(self.theirs, SAME)  # what is exact stays at rounding
         return bool(self.difference < SAME and self.change < CHANGE and falls)
 
 

@@ -30,7 +30,7 @@ WRONG = {
     "new": [["nosuch"], ["static", "--out", "file/x"], ["static", "--out", "folder"]],
     "precision": [["--out", "missing"], ["nosuch"]],
     "report": [["--out", "missing"], ["--out", "file"]],
-    "run": [["nosuch"], ["--jobs", "-1"], ["--timeout", "nan"], ["--level", "nosuch"],
+    "run": [["nosuch"], ["--jobs", "-1"], ["--dask", "x:1", "--jobs", "2"], ["--timeout", "nan"], ["--level", "nosuch"],
             ["patch", "--out", "file/x"], ["patch", "--json", "folder"]],
     "schema": [["--out", "file/x"], ["--folder", "file"]],
     "solve": [["missing.toml"], ["broken.toml"], ["folder"], ["."], ["x\0y"],
