@@ -99,7 +99,7 @@ def measure(n: int) -> Measurement:
     density_sum = recovery.strain_energy_density(solution).sum() / n**2
     batch = breaks["step"] == breaks["step"][0]
     spent = h.dissipated[h.broken == batch.sum()]
-    end = run.path[-1] - run.path[0]
+    length = float(np.hypot(*(run.path[-1] - run.path[0])))
     gone = run.bonds.strengths.ravel()[run.broken_bonds]
     return Measurement(
         solution.statistics.unknowns,
@@ -110,7 +110,7 @@ def measure(n: int) -> Measurement:
             "work": float(abs(h.work[before] / stored - 1.0)),
             "density": float(abs(density_sum / held.sum() - 1.0)),
             "cost": float(abs(spent[0] / cost[first].sum() - 1.0)) if len(spent) else float("nan"),
-            "advance": float(abs(run.advance / np.hypot(*end) - 1.0)),
+            "advance": abs(run.advance / length - 1.0) if length else float("nan"),
             "left": float(np.abs(gone).max()),
             "balance": float(np.abs(h.imbalance).max() / h.work.max()),
         },
