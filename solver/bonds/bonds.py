@@ -409,6 +409,17 @@ class Bonds:
         factors[:, columns >= 0] = self.strengths[:, columns[columns >= 0]]
         return factors
 
+    def lengths_left(self, particles: Indices) -> Array:
+        """What is left, m, of bonds that end at the surface, zero of others; as `strengths_of`."""
+        found = np.zeros((self.family.size, len(particles)))
+        if self.ended is not None:
+            column = np.full(self.lattice.count, -1)
+            column[particles] = np.arange(len(particles))
+            at = column[self.ended.particle]
+            mine = at >= 0
+            found[self.ended.offset[mine], at[mine]] = self.ended.length[mine]
+        return found
+
     @property
     def nbytes(self) -> int:
         """Memory of everything stored for single bonds."""

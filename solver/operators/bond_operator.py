@@ -114,8 +114,8 @@ class BondOperator(LinearOperator):
     def calibrate_tips(self, tips: Sequence[TipStiffness]) -> None:
         """Add the stiffness of calibrated tips, whose particles are active and wholly free.
 
-        Diagonal blocks, and so preconditioners, know nothing of it: it changes energies by less
-        than a factor of two, and iterations by one at most.
+        Diagonal blocks, and so preconditioners, know nothing of it: it changes energies by
+        factors of 0.1 to 4 in few modes, and iterations by one at most (13 tips, m = 2).
         """
         self.tips = tuple(tips)
         self.at_tips = tuple(np.searchsorted(self.active, tip.particles) for tip in tips)

@@ -12,7 +12,7 @@ from typing import Any, Literal, Protocol, get_args
 
 import numpy as np
 
-from ..arrays import Array, Mask
+from ..arrays import Array, Indices, Mask
 from ..errors import SceneError
 from ..geometry.exact import CELL
 from ..material import ElasticModuli, Stability
@@ -23,6 +23,8 @@ Tip = Literal["drawn", "calibrated"]
 
 # Cells from a tip within which no particle may lie on the crack.
 _ON = 1e-5
+# Cells by which what is left of bonds that end may differ between tips that are alike.
+_LEFT = 1e-3
 
 
 class Tipped(Protocol):
@@ -108,57 +110,81 @@ def calibrate(scene: Tipped, operator: BondOperator, prescribed: Mask) -> tuple[
     """Add to the operator what calibrated tips do; returns which are left and why, a line each."""
     if scene.tip == "drawn":
         return ()
-    bonds, moduli = operator.bonds, operator.moduli
-    if type(moduli) is not ElasticModuli:
+    bonds = operator.bonds
+    if type(operator.moduli) is not ElasticModuli:
         raise SceneError(
             "tips of cracks are calibrated (tip='calibrated') in Cauchy solids, neither polar nor "
             "chiral ones"
         )
     lattice, cracks = bonds.lattice, bonds.cracks
     number = lattice.number()
-    taken: Mask = np.asarray(prescribed.any(axis=0))
-    found: list[TipStiffness] = []
-    told: list[str] = []
+    held: Mask = np.asarray(prescribed.any(axis=0))
+    found: list[TipStiffness | str] = []
+    places: list[tuple[float, float]] = []
     for piece, end in zip(*np.nonzero(cracks.tips), strict=True):
         tip, other = cracks.pieces[piece, end], cracks.pieces[piece, 1 - end]
         direction = (tip - other) / np.hypot(*(tip - other))
         base = np.rint(tip / CELL)
-        place = tip / CELL - base
         x, y = cracks.frame.metres(tip[None])[0] + lattice.shift
-        why = None
-        if _on_crack(place, direction):
-            why = "it runs through particles"
+        places.append((x, y))
+        found.append(_calibrated(operator, number, held, base, tip / CELL - base, direction))
+    # Tips that share particles are both left: which came first is no matter of the body's.
+    known = [tip for tip in found if isinstance(tip, TipStiffness)]
+    shared = np.bincount(np.concatenate([[0], *(tip.particles for tip in known)])[1:])
+    used: list[TipStiffness] = []
+    told: list[str] = []
+    for (x, y), made in zip(places, found, strict=True):
+        why = made if isinstance(made, str) else "another tip is within its reach"
+        if isinstance(made, TipStiffness) and (shared[made.particles] == 1).all():
+            used.append(made)
         else:
-            try:
-                known, matrix = calibrated_tip(bonds.family, moduli, place, direction)
-            except TipCalibrationError as error:
-                why = str(error)
-        if why is None:
-            column, row = (known.cells + base.astype(np.int64)).T
-            inside = (column >= 0) & (row >= 0)
-            inside &= (row < number.shape[0]) & (column < number.shape[1])
-            at = np.where(inside, number[row * inside, column * inside], -1)
-            if (at < 0).any() or taken[at].any():
-                why = "an edge, a held particle or another tip is within its reach"
-            elif not np.array_equal(bonds.strengths_of(at), known.strengths):
-                why = "an edge, a bend or another crack is within a horizon of its reach"
-        if why is not None:
             told.append(f"the crack's tip at ({x:.4g}, {y:.4g}) is not calibrated: {why}")
-            continue
-        taken = taken.copy()
-        taken[at] = True
-        order = np.argsort(at)
-        count = len(at)
-        where = (np.arange(moduli.components)[:, None] * count + order).ravel()
-        found.append(TipStiffness(at[order], matrix[np.ix_(where, where)]))
-    operator.calibrate_tips(found)
+    operator.calibrate_tips(used)
     return tuple(told)
 
 
-def _on_crack(place: Array, direction: Array) -> bool:
-    """Whether a particle within reach lies on a crack with this tip."""
-    cells = np.indices((13, 13)).reshape(2, -1).T - 6 - place
+def _calibrated(
+    operator: BondOperator,
+    number: Indices,
+    held: Mask,
+    base: Array,
+    place: Array,
+    direction: Array,
+) -> TipStiffness | str:
+    """What is added at a tip in the cell `base`, or why nothing is."""
+    bonds, moduli = operator.bonds, operator.moduli
+    if _on_crack(place, direction, bonds.family.reach):
+        return "it runs through particles"
+    assert type(moduli) is ElasticModuli
+    try:
+        known, matrix = calibrated_tip(bonds.family, moduli, place, direction)
+    except TipCalibrationError as error:
+        return str(error)
+    column, row = (known.cells + base.astype(np.int64)).T
+    inside = (column >= 0) & (row >= 0)
+    inside &= (row < number.shape[0]) & (column < number.shape[1])
+    at = np.where(inside, number[row * inside, column * inside], -1)
+    if (at < 0).any() or held[at].any():
+        return "an edge or a held particle is within its reach"
+    left = bonds.lengths_left(at) / bonds.family.spacing
+    same = np.array_equal(bonds.strengths_of(at), known.strengths)
+    # Cut by the same bonds is not alike: what they end at may be another crack, or bent.
+    if not same or np.abs(left - known.left).max() > _LEFT:
+        return "an edge, a bend or another crack is within a horizon of its reach"
+    order = np.argsort(at)
+    where = (np.arange(moduli.components)[:, None] * len(at) + order).ravel()
+    return TipStiffness(at[order], matrix[np.ix_(where, where)])
+
+
+def _on_crack(place: Array, direction: Array, reach: int) -> bool:
+    """Whether a particle within reach, or at the end of its bonds, lies on a crack with this tip.
+
+    Such a particle belongs to one face by a rule: tips that are each other's images would differ.
+    """
+    most = SIZE + reach
+    away = int(np.ceil(most)) + 1
+    cells = np.indices((2 * away + 1,) * 2).reshape(2, -1).T - away - place
     behind = cells @ direction
     beside = cells @ np.array([-direction[1], direction[0]])
-    near = np.hypot(*cells.T) <= SIZE
+    near = np.hypot(*cells.T) <= most
     return bool((near & (behind <= _ON) & (np.abs(beside) <= _ON)).any())

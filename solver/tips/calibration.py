@@ -15,7 +15,8 @@ from .patch import Patch, TipCalibrationError
 from .update import best_forces, changed, stretch
 
 # Weight of forces over the displacement's error, of 1e-2 … 1e-6 the largest from which on smaller
-# ones gain little: the bonds' energies then change by factors of 0.5 to 1.8.
+# ones gain little: the bonds' energies then change by factors of 0.5 to 1.8 along rows, and of 0.1
+# to 4 wherever a tip may lie and point.
 _MU = 1e-3
 # Least and greatest change of energies that is let pass; beyond lies no calibration but a trick.
 _LEAST, _MOST = 0.1, 10.0
@@ -31,8 +32,9 @@ class CalibratedTip:
     ----------
     cells : ndarray of int, shape (t, 2)
         Columns and rows of its particles from the one in whose cell the tip lies.
-    strengths : ndarray, shape (family size, t)
-        Of their bonds: a tip whose surroundings have others is another tip.
+    strengths, left : ndarray, shape (family size, t)
+        Of their bonds, and what is left, in cells, of those that end at the crack, zero of others:
+        a tip whose surroundings have others is another tip.
     matrix : ndarray, shape (components t, components t)
         Added stiffness, component by component, over the largest modulus and the spacing.
     stretch : pair of float
@@ -41,6 +43,7 @@ class CalibratedTip:
 
     cells: Indices
     strengths: Array
+    left: Array
     matrix: Array
     stretch: tuple[float, float]
 
@@ -53,6 +56,7 @@ class CalibratedTip:
         return CalibratedTip(
             -self.cells,
             np.roll(self.strengths, half, axis=0),
+            np.roll(self.left, half, axis=0),
             sign[:, None] * self.matrix * sign,
             self.stretch,
         )
@@ -149,7 +153,7 @@ def _of(patch: Patch, place: Array, along: Array) -> CalibratedTip:
         raise TipCalibrationError(
             f"its bonds' energies would have to change by factors of {low:.2g} to {high:.2g}"
         )
-    return CalibratedTip(patch.cells, patch.strengths, change, (low, high))
+    return CalibratedTip(patch.cells, patch.strengths, patch.left, change, (low, high))
 
 
 def homogeneous(away: Array, strain: Array, components: int) -> Array:

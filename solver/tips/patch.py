@@ -37,8 +37,8 @@ class Patch:
     ----------
     cells : ndarray of int, shape (t, 2)
         Columns and rows of the tip's particles from the one in whose cell the tip lies.
-    strengths : ndarray, shape (family size, t)
-        Of their bonds.
+    strengths, left : ndarray, shape (family size, t)
+        Of their bonds, and what is left of those that end at the crack, zero of others.
     plain, exact : ndarray, shape (components, N, 2)
         Computed and exact values of all free particles, by mode.
     moved : ndarray, shape (components, N, d)
@@ -51,6 +51,7 @@ class Patch:
 
     cells: Indices
     strengths: Array
+    left: Array
     plain: Array
     exact: Array
     moved: Array
@@ -109,6 +110,7 @@ class Patch:
         return cls(
             cells,
             bonds.strengths_of(particles),
+            bonds.lengths_left(particles),
             found[:, :, :2],
             np.moveaxis(field[:, :, active], 0, 2),
             found[:, :, 2:],
