@@ -172,6 +172,10 @@ def run(
         raise SceneError("Joule's heat and what it strains know one solid: the body has inclusions")
     if not (np.isfinite(voltage) and voltage != 0):
         raise SceneError(f"without a voltage no current heats the body: {voltage} V")
+    if scene.tip == "calibrated":
+        raise SceneError(
+            "tips of cracks are calibrated (tip='calibrated') in bodies that no temperature strains"
+        )
     angle = math.radians(angle_degrees)
     bare = replace(scene, loads=(), law=None, density=None)
     electric = replace(

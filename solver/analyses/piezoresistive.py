@@ -149,7 +149,14 @@ def run(
     )
     electrodes = [Support.lead(plus, potential=1.0), Support.lead(minus, potential=0.0)]
     conductor = replace(
-        scene, material=material, supports=electrodes, loads=(), law=None, density=None
+        scene,
+        material=material,
+        supports=electrodes,
+        loads=(),
+        law=None,
+        density=None,
+        # Of the mechanics: conduction knows tips as they are drawn.
+        tip="drawn",
     )
     # What is wrong with the electrodes is said before anything long.
     bare = Discretisation.of(conductor, constrained=True)
