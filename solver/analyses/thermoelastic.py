@@ -353,6 +353,10 @@ def motion(
     """
     if scene.physics is not ELASTICITY:
         raise SceneError(f"heat strains an elastic body, and this is {scene.physics.adjective} one")
+    if scene.tip == "calibrated":
+        raise SceneError(
+            "tips of cracks are calibrated (tip='calibrated') in bodies that no temperature strains"
+        )
     if not all(k > 0 for k in conductivities):
         raise SceneError(f"conductivities must be positive, not {conductivities}")
     angle = radians(angle_degrees)

@@ -149,6 +149,7 @@ max_solves, tolerance, checkpoint, progress
         loads=[Load.lead(1.0, lead_plus)],
         law=None,
         density=None,
+        tip="drawn",  # the mechanics say what they make of tips
     )
     sensor = Sensor(conductor, probe_plus, probe_minus)
     growth = break_bonds(

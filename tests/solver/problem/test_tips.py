@@ -18,7 +18,8 @@ from solver import (
     recovery,
     rectangle,
 )
-from solver.analyses import joule, piezoresistive
+from solver.analyses import joule, piezoresistive, thermoelastic
+from solver.fracture import sensed
 from solver.reactions import reaction, residual
 
 PAPER = np.array([[1.0, 1 / 5, 1 / 10], [1 / 5, 4 / 5, 1 / 6], [1 / 10, 1 / 6, 1 / 3]])
@@ -151,6 +152,28 @@ def test_a_body_that_current_heats_refuses_it_by_that_name():
 
     with pytest.raises(SceneError, match="no temperature strains"):
         joule.run(cracked(), up, down, down, 1.0, (1.0, 1.0), (1.0, 1.0), (1e-6, 1e-6))
+    with pytest.raises(SceneError, match="no temperature strains"):
+        thermoelastic.motion(cracked(density=1.0), (1.0, 1.0), (1e-6, 1e-6), 1.0, 300.0, 1e-3, 2)
+
+
+def test_a_crack_that_grows_and_is_sensed_refuses_it_as_one_that_grows():
+    def up(x, y):
+        return y > 8
+
+    def down(x, y):
+        return y < -8
+
+    with pytest.raises(SceneError, match="with fracture"):
+        sensed.run(
+            cracked(),
+            (1.0, 1.0),
+            up,
+            down,
+            up,
+            down,
+            G1=1.0,
+            max_solves=2,
+        )
 
 
 @pytest.mark.parametrize(
