@@ -55,7 +55,7 @@ class Discretisation:
     edge_values : ndarray, shape (components, nodes of the outline), optional
         Values at which nodes are held, if others than those of the bonds: at another time.
     tips_left : tuple of str
-        Why some tips of cracks are not calibrated, one sentence each.
+        Why some tips of cracks are not calibrated, and which are loaded, one sentence each.
     """
 
     scene: Description
@@ -195,6 +195,7 @@ class Discretisation:
                 "a load on an edge acts on a part that nothing holds: hold it, or leave it out of "
                 "the load (where=...)"
             )
+        left += tips.loaded(operator, load)
         acting = load.copy() if any(item.strain is not None for item in scene.loads) else None
         eigenstrain = loading.eigenstrain(scene, lattice, operator, load, nodal_load)
         loading.require_range(operator, values, load, nodal_load)

@@ -143,6 +143,24 @@ def calibrate(scene: Tipped, operator: BondOperator, prescribed: Mask) -> tuple[
     return tuple(told)
 
 
+def loaded(operator: BondOperator, load: Array) -> tuple[str, ...]:
+    """Says so if loads act on particles around calibrated tips, whose fields know none.
+
+    Parameters
+    ----------
+    load : (components, N) array
+        What acts on particles.
+    """
+    count = sum(bool(load[:, tip.particles].any()) for tip in operator.tips)
+    if not count:
+        return ()
+    return (
+        f"loads act on particles around {count} calibrated tip(s): what was calibrated are a tip's "
+        f"fields without loads; a force that is spread over the body matters little there, one at "
+        f"the tip does",
+    )
+
+
 def _calibrated(
     operator: BondOperator,
     number: Indices,

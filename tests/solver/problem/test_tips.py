@@ -9,6 +9,7 @@ from solver import (
     ConductivityTensor,
     Crack,
     ElasticTensor,
+    Load,
     Scene,
     SceneError,
     Support,
@@ -141,6 +142,24 @@ def test_mechanics_of_a_strained_conductor_may_be_calibrated():
         scene, 2.0, lambda x, y: y > 8, lambda x, y: y < -8, (1.0, 1.0), tolerance=1e-6
     )
     assert len(resistor.mechanics.discretisation.operator.tips) == 1
+
+
+def test_loads_around_a_tip_are_told_of():
+    tip = 9.3 * ALONG
+
+    def force(x0, y0):
+        about = {"where": lambda x, y: np.hypot(x - x0, y - y0) < 1.5}
+        return Load.body_force((0.0, 1e-3), **about)
+
+    near, far = force(*tip), force(0.0, 0.0)
+    scene = cracked()
+
+    def said(load):
+        warnings = replace(scene, loads=[load]).solve().statistics.warnings
+        return [w for w in warnings if "loads act on particles around 1 calibrated" in w]
+
+    assert said(near)
+    assert not said(far)
 
 
 def test_a_body_that_current_heats_refuses_it_by_that_name():
