@@ -222,6 +222,7 @@ def _run(
     fenicsx = crosscheck_command.found() if cross_check else None
     jobs = jobs or available_cores()
     screen = console()
+    # Runs are told apart by when they began.
     started, clock = datetime.datetime.now().astimezone(), time.perf_counter()
     plan = runner.plan(cases, level)
     earlier = _earlier(out)
@@ -230,7 +231,7 @@ def _run(
         jobs=jobs,
         threads=threads_per_worker(jobs),
         command=_command(names, level, jobs, out, dask),
-        started=started.isoformat(timespec="seconds"),
+        started=started.isoformat(timespec="milliseconds"),
         wall_seconds=0.0,
         environment=environment.describe().as_dict(),
         measured=[list(task) for task in plan],

@@ -52,7 +52,7 @@ def test_run_writes_everything_and_succeeds(toys, tmp_path):
     assert shown.exit_code == 0, shown.output
     assert "bond/trapezium" in shown.output
     next(out.glob("results/toy/*/0010.npz")).unlink()
-    resumed = cli.invoke(app, [*given, "--resume"])
+    resumed = cli.invoke(app, [*given, "--resume", "--overwrite"])
     assert resumed.exit_code == 0, resumed.output
     assert resumed.output.count("reused") == 1
 
