@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from cmverify.run.results import write_text
+from cmverify.report import study_file
 from cmverify.studies.crosscheck import Row
 
 NAME, FORMAT = "crosscheck.json", 1
@@ -76,8 +75,7 @@ def keeping(new: CrossCheck, folder: Path, cases: Iterable[str]) -> CrossCheck:
 
 def write(found: CrossCheck, folder: Path) -> None:
     """Write crosscheck.json."""
-    data = {"format": FORMAT, **asdict(found)}
-    write_text(folder / NAME, json.dumps(data, indent=1, ensure_ascii=False))
+    study_file.write(folder / NAME, FORMAT, asdict(found))
 
 
 def read(folder: Path) -> CrossCheck | None:
@@ -88,13 +86,9 @@ def read(folder: Path) -> CrossCheck | None:
     ValueError
         If it cannot be read.
     """
-    path = folder / NAME
-    if not path.is_file():
-        return None
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-        if data.pop("format") != FORMAT:
-            raise ValueError(f"it is not of format {FORMAT}")
-        return CrossCheck(**{**data, "rows": [Row(**row) for row in data["rows"]]})
-    except (KeyError, TypeError, ValueError, OSError) as error:
-        raise ValueError(f"{path} is no cross-check: {error}") from error
+    return study_file.read(
+        folder / NAME,
+        FORMAT,
+        "cross-check",
+        lambda data: CrossCheck(**{**data, "rows": [Row(**one) for one in data["rows"]]}),
+    )

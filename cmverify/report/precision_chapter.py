@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from cmverify.report import study_file
 from cmverify.report.picture import Picture
 from cmverify.run.results import write_text
 from cmverify.studies.precision import Point, as_csv, seconds_to
@@ -41,8 +41,7 @@ class Study:
 
 def write(study: Study, folder: Path) -> None:
     """Write precision.json and precision.csv."""
-    data = {"format": FORMAT, **asdict(study)}
-    write_text(folder / NAME, json.dumps(data, indent=1, ensure_ascii=False))
+    study_file.write(folder / NAME, FORMAT, asdict(study))
     write_text(folder / TABLE, as_csv(study.points))
 
 
@@ -54,16 +53,12 @@ def read(folder: Path) -> Study | None:
     ValueError
         If it cannot be read.
     """
-    path = folder / NAME
-    if not path.is_file():
-        return None
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-        if data.pop("format") != FORMAT:
-            raise ValueError(f"it is not of format {FORMAT}")
-        return Study(**{**data, "points": [Point(**point) for point in data["points"]]})
-    except (KeyError, TypeError, ValueError, OSError) as error:
-        raise ValueError(f"{path} is no study of precision: {error}") from error
+    return study_file.read(
+        folder / NAME,
+        FORMAT,
+        "study of precision",
+        lambda data: Study(**{**data, "points": [Point(**one) for one in data["points"]]}),
+    )
 
 
 def sections(study: Study, titles: dict[str, str], quantities: dict[str, str]) -> list[Any]:

@@ -256,7 +256,12 @@ def solve_elasticity(
     """As :func:`references.fem.elasticity.solve_elasticity`; nodal displacements (n, 2).
 
     Forces and tractions are interpolated at the nodes: exact for polynomials up to the elements'
-    order. Loads on a body that nothing holds must balance but for rounding.
+    order. Loads on a body that nothing holds must balance but for rounding, chords included.
+
+    Raises
+    ------
+    FenicsxError
+        If they do not.
     """
     numbering = number(mesh, order)
     x, y = dirichlet_points(mesh, numbering.nodes, numbering.element_nodes).T
@@ -281,6 +286,7 @@ def solve_elasticity(
         "tensor": checked_voigt(voigt),
         "prescribed": prescribed,
         "tractions": len(tractions or {}),
+        "free": not given,
     }
     if body_force is not None:
         problem["source"] = evaluate_vector(body_force, x, y)

@@ -25,6 +25,7 @@ Keys of the problem (n nodes, c components: 1 in conduction, else 2):
 ``element_source``         (M, 1), optional    source that is even in each triangle, W/m³
 ``initial_strain``         (M, 1, 3)           of each triangle without stress (11, 22, 2·12),
                                                optional
+``free``                   bool, optional      nothing holds the body: loads must balance
 ``tractions``              int                 number of loaded boundaries (static problems)
 ``traction_edges_k``       (e, 2) int          edges of the k-th one, pairs of vertices
 ``traction_values_k``      (n, c)              its nodal tractions, Pa; used on those edges only
@@ -247,6 +248,18 @@ def use_lu(preconditioner):  # type: ignore[no-untyped-def]
         raise RuntimeError("this PETSc has no parallel LU: run the worker on one rank")
 
 
+def require_balance(right, v, mesh, load):  # type: ignore[no-untyped-def]
+    """Refuse loads with a resultant: three held components would carry it in silence."""
+    total = MPI.COMM_WORLD.allreduce(float(np.abs(load.array).sum()))
+    x = ufl.SpatialCoordinate(mesh)
+    away = float(np.abs(mesh.geometry.x).max())
+    turning = ufl.as_vector((-x[1] / away, x[0] / away))
+    for motion in (ufl.as_vector((1.0, 0.0)), ufl.as_vector((0.0, 1.0)), turning):
+        part = fem.assemble_scalar(fem.form(ufl.replace(right, {v: motion})))
+        if abs(MPI.COMM_WORLD.allreduce(float(np.real(part)))) > 1e-8 * total:
+            raise RuntimeError("nothing holds the body and its loads are not in equilibrium")
+
+
 def solve_static(problem, mesh, space, nodes):  # type: ignore[no-untyped-def]
     """Prescribed values, sources and tractions -> nodal values."""
     v = ufl.TestFunction(space)
@@ -281,6 +294,8 @@ def solve_static(problem, mesh, space, nodes):  # type: ignore[no-untyped-def]
     matrix = petsc.assemble_matrix(form, bcs=conditions)
     matrix.assemble()
     load = petsc.assemble_vector(fem.form(right))
+    if bool(problem.get("free", False)):
+        require_balance(right, v, mesh, load)
     petsc.apply_lifting(load, [form], [conditions])
     load.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
     petsc.set_bc(load, conditions)

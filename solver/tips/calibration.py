@@ -142,12 +142,15 @@ def _of(patch: Patch, place: Array, along: Array) -> CalibratedTip:
         still,
         _MU,
     )
-    change = None
-    if forces is not None:
-        states = np.column_stack([plain - response @ forces, still])
-        change = changed(patch.bonds, states, np.pad(forces, ((0, 0), (0, still.shape[1]))))
-    if forces is None or change is None:
+    if forces is None:
         raise TipCalibrationError("the bonds around it store negative energy")
+    states = np.column_stack([plain - response @ forces, still])
+    change = changed(patch.bonds, states, np.pad(forces, ((0, 0), (0, still.shape[1]))))
+    if change is None:
+        raise TipCalibrationError(
+            "no positive change of its bonds answers its fields, as where a particle lies close to "
+            "the crack"
+        )
     low, high = stretch(patch.bonds, change)
     if low < _LEAST or high > _MOST:
         raise TipCalibrationError(

@@ -162,6 +162,16 @@ def test_free_rigid_motions_are_refused_before_any_work() -> None:
         bridge.in_plane_frequencies(cut, C, 1.0, 3)
 
 
+def test_loads_that_do_not_balance_are_refused_where_nothing_holds_the_body() -> None:
+    mesh = rectangle(1, 1, 0.3)
+    pulled = {"left": (-1.0, 0.0), "right": (1.0, 0.0)}
+    ours = solve_elasticity(mesh, C, tractions=pulled)
+    assert relative(bridge.solve_elasticity(mesh, C, tractions=pulled), ours.values) < 1e-11
+    for wrong in ({"right": (1.0 + 1e-6, 0.0)}, {"left": (-1.0, -1e-6), "right": (1.0, 1e-6)}):
+        with pytest.raises(bridge.FenicsxError, match="not in equilibrium"):
+            bridge.solve_elasticity(mesh, C, tractions={**pulled, **wrong})
+
+
 def test_a_field_that_jumps_across_both_faces() -> None:
     def jumping(x: NDArray, y: NDArray) -> NDArray:
         return np.sqrt(np.hypot(x, y)) * np.sin(np.arctan2(y, x) / 2)
