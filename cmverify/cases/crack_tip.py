@@ -463,7 +463,14 @@ def _case(mode: str, problem: Problem, bounds: dict[int, float], shows: str) -> 
         seen = "Fig. 8: drawn on the closed form; measured 9e-4"
         checks += [
             Check("bond/lattice", "stress ahead", {30: 3e-3}, source=seen),
-            Check("fem/P2 graded", "stress ahead", {30: 1e-3}, source=graded),
+            Check(
+                "fem/P2 graded",
+                "stress ahead",
+                {30: 1e-3, 120: 5e-3},
+                # The median falls (1.6e-4, 1.2e-4, 5.5e-5); the largest is that next to the tip.
+                source=f"{graded}. 2δ falls with the spacing, and close to the tip elements are "
+                "0.15 of their distance from it however many there are: 3.3e-3 at a/120",
+            ),
         ]
     return Case(
         name=f"crack-tip-{mode}",
