@@ -26,6 +26,8 @@ from ..operators import BondOperator
 # which a square grid costs more iterations than a stretched one. It is 0.9 to 1 in isotropic solids
 # and in bone, 0.25 in a conductor of ratio 10, 0.14 in a ply.
 _WEAK = 0.4
+# Energy, over the weakest, up to which long waves are about as weak.
+_TIED = 1.05
 # Distances of nodes along the strong axis and across it by unknowns a particle, relative to those
 # that the energies of long waves ask for.
 _STRETCH = {1: (1.7, 1.2), 2: (1.2, 1.0), 3: (1.2, 1.0)}
@@ -214,8 +216,12 @@ def _axes(operator: BondOperator, phase: int) -> tuple[Array, Array]:
     rows = moduli.wave_rows(np.column_stack([np.cos(angle), np.sin(angle)]))
     acoustic = rows.swapaxes(-1, -2) @ effective_tensor(family, moduli) @ rows
     scale = family.spacing * np.sqrt(np.diagonal(own)[: acoustic.shape[-1]])
-    energy = np.linalg.eigvalsh(acoustic / np.outer(scale, scale))[:, 0]
-    least = int(energy.argmin())
+    energies = np.linalg.eigvalsh(acoustic / np.outer(scale, scale))
+    energy = energies[:, 0]
+    # A ply shears as easily along its fibres as across them: of waves that are about as weak those
+    # count that are weak in every motion, and rounding does not choose.
+    tied = energy <= _TIED * energy.min()
+    least = int(np.where(tied, energies.sum(axis=1), np.inf).argmin())
     across = (least + _DIRECTIONS // 2) % _DIRECTIONS
     weak = np.array([np.cos(angle[least]), np.sin(angle[least])])
     return weak, np.asarray(energy[[least, across]], dtype=np.float64)

@@ -36,6 +36,19 @@ def test_nodes_lie_far_apart_along_the_strong_axis_and_close_across(angle):
         assert (row, column) == tuple(grid.cells * step for step in number)
 
 
+@pytest.mark.parametrize("degrees", [0, 17, 30, 45, 60, 90, 135, 163])
+def test_nodes_of_a_ply_lie_far_apart_along_its_fibres(degrees):
+    """Its shear waves along the fibres are as weak as those across: their ties are no matter."""
+    ply = ElasticTensor.orthotropic(E1=140.0, E2=10.0, G12=5.0, nu12=0.3)
+    held = Support.layer(cells=5.5, displacement=(0.0, 0.0), rotation=0.0)
+    turned = ply.rotated(np.radians(degrees))
+    scene = Scene(disc(1.0), 1 / 14, turned, [held], m=5, calibration="positive")
+    grid = CoarseGrid.of(scene.discretise().operator, 8)
+    fibres = np.array([np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
+    longest = max(grid.along, grid.across, key=lambda vector: np.hypot(*vector))
+    assert abs(np.dot(longest, fibres)) > 0.95 * np.hypot(*longest)
+
+
 def test_weakly_anisotropic_solids_keep_the_square_grid():
     tensor = ElasticTensor([[1, 0.2, 0.1], [0.2, 0.8, 1 / 6], [0.1, 1 / 6, 1 / 3]])
     held = Support.layer(cells=5.5, displacement=(0.0, 0.0), rotation=0.0)
