@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import json
-import multiprocessing
-import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -15,8 +12,8 @@ from pathlib import Path
 from cmverify.faults import trial
 from cmverify.faults.fault import Fault
 from cmverify.faults.trial import Found, Pair, Sound
-from cmverify.run.lifeline import hold
-from cmverify.run.threads import thread_environment
+from cmverify.run.lifeline import workers
+from cmverify.run.threads import child_environment, thread_environment
 
 #: Methods that caught a fault when it was last searched for, cheapest first.
 Map = dict[str, list[Pair]]
@@ -78,7 +75,7 @@ def attempt(
     there = set(trial.pairs())
     plans = {f.name: [p for p in known.get(f.name, ()) if p in there] for f in chosen}
     results: dict[str, Result] = {}
-    with _workers(jobs) as pool:
+    with child_environment(thread_environment(1)), workers(jobs) as pool:
         sound = _sound(pool, sorted({p for plan in plans.values() for p in plan}), {}, listen)
         first = [f for f in chosen if plans[f.name]]
         for fault, found in _search(pool, first, plans, sound, enough, listen):
@@ -131,25 +128,6 @@ def _search(
         found.append((waiting[future], future.result()))
         listen(waiting[future].name, done, len(waiting))
     return found
-
-
-@contextmanager
-def _workers(jobs: int) -> Iterator[ProcessPoolExecutor]:
-    """Processes started afresh, because the limits of threads are read at import.
-
-    Who interrupts the search does not wait for what is being tried, nor for all that is planned.
-    """
-    os.environ.update(thread_environment(1))
-    context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(jobs, context, initializer=hold, initargs=(os.getpid(),))
-    try:
-        yield pool
-    except BaseException:
-        pool.shutdown(wait=False, cancel_futures=True)
-        for child in multiprocessing.active_children():
-            child.kill()
-        raise
-    pool.shutdown()
 
 
 def read_map() -> Map:

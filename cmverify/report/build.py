@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import os
 from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -26,7 +23,7 @@ from cmverify.report.summary import CaseResult, Row, RunInfo, as_json, table, ta
 from cmverify.report.tables import blocks
 from cmverify.report.topics import by_topic
 from cmverify.report.wording import heading, mathtext
-from cmverify.run.lifeline import hold
+from cmverify.run.lifeline import workers
 from cmverify.run.results import write_text
 from cmverify.run.threads import child_environment
 
@@ -131,24 +128,13 @@ def _drawn(
 def _draw_in_processes(
     summary: Sequence[CaseResult], folder: Path, jobs: int
 ) -> list[tuple[list[Picture], list[str]]]:
-    # Spawned and not forked: the parent may have threads. Functions of a case stay here.
-    context = multiprocessing.get_context("spawn")
+    # Functions of a case stay here: they cannot be sent.
     bare = [replace(result, case=_without_functions(result.case)) for result in summary]
-    with child_environment():
-        pool = ProcessPoolExecutor(
-            jobs, mp_context=context, initializer=hold, initargs=(os.getpid(),)
-        )
-        try:
-            # By one of them: to write fields is quick, to load the solver that knows how is not.
-            writing = pool.submit(_export_all, bare, folder)
-            drawn = list(pool.map(_draw, bare, [folder] * len(bare)))
-            written = writing.result()
-        except BaseException:
-            for child in multiprocessing.active_children():
-                child.kill()
-            raise
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
+    with child_environment(), workers(jobs) as pool:
+        # By one of them: to write fields is quick, to load the solver that knows how is not.
+        writing = pool.submit(_export_all, bare, folder)
+        drawn = list(pool.map(_draw, bare, [folder] * len(bare)))
+        written = writing.result()
     return list(zip(drawn, written, strict=True))
 
 

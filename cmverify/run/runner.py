@@ -20,7 +20,7 @@ from pathlib import Path
 
 from cmverify.case import Case, Failed, Level
 from cmverify.run import results, unfinished
-from cmverify.run.lifeline import end_group
+from cmverify.run.lifeline import end_group, sheltered
 from cmverify.run.threads import child_environment, thread_environment, threads_per_worker
 from cmverify.run.worker import measured, serve
 
@@ -205,7 +205,8 @@ def _start(folder: Path, threads: int, registry: str) -> _Worker:
         given = (there, registry, folder, threads, os.getpid())
         process = context.Process(target=serve, args=given)
         process.daemon = True
-        process.start()
+        with sheltered():
+            process.start()
     there.close()
     return _Worker(process, here)
 

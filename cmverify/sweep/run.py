@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
-import multiprocessing
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -148,32 +147,22 @@ def on_processes(todo: Sequence[Point], folder: Path, jobs: int) -> Done:
 
 
 def _pool(
-    todo: Sequence[Point], folder: Path, workers: int, jobs: int
+    todo: Sequence[Point], folder: Path, processes: int, jobs: int
 ) -> Iterator[tuple[Point, dict[str, Any] | str | None]]:
     """Points with their records, or an error; None for what was lost with a process."""
-    from cmverify.run.lifeline import hold
+    from cmverify.run.lifeline import workers
     from cmverify.run.threads import child_environment, thread_environment, threads_per_worker
 
-    context = multiprocessing.get_context("spawn")
-    with child_environment(thread_environment(threads_per_worker(jobs))):
-        pool = ProcessPoolExecutor(
-            workers, mp_context=context, initializer=hold, initargs=(os.getpid(),)
-        )
-        try:
-            tasks = {pool.submit(work.solve, point, str(folder)): point for point in todo}
-            for task in as_completed(tasks):
-                try:
-                    yield tasks[task], task.result()
-                except BrokenProcessPool:
-                    yield tasks[task], None
-                except Exception as error:
-                    yield tasks[task], f"{type(error).__name__}: {error}"
-        except BaseException:
-            for child in multiprocessing.active_children():
-                child.kill()
-            raise
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
+    threads = thread_environment(threads_per_worker(jobs))
+    with child_environment(threads), workers(processes) as pool:
+        tasks = {pool.submit(work.solve, point, str(folder)): point for point in todo}
+        for task in as_completed(tasks):
+            try:
+                yield tasks[task], task.result()
+            except BrokenProcessPool:
+                yield tasks[task], None
+            except Exception as error:
+                yield tasks[task], f"{type(error).__name__}: {error}"
 
 
 def on_cluster(todo: Sequence[Point], folder: Path, address: str) -> Done:

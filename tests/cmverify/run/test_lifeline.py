@@ -12,7 +12,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from cmverify.run.lifeline import in_good_order
+from cmverify.run.lifeline import in_good_order, sheltered
 
 ROOT = Path(__file__).parents[3]
 PROGRAM = """
@@ -29,6 +29,26 @@ if __name__ == "__main__":
     from cmverify.cli import main
 
     main()
+"""
+
+STARTING = """
+import multiprocessing
+import os
+import signal
+
+from cmverify.run.lifeline import hold, sheltered, workers
+
+if __name__ == "__mp_main__":
+    signal.raise_signal(signal.SIGINT)
+
+if __name__ == "__main__":
+    with workers(1) as pool:
+        print(pool.submit(abs, -3).result())
+    process = multiprocessing.get_context("spawn").Process(target=hold, args=(os.getpid(),))
+    with sheltered():
+        process.start()
+    process.join()
+    print(process.exitcode)
 """
 
 
@@ -86,6 +106,40 @@ def test_a_run_that_is_ended_leaves_no_process_and_can_be_reported(tmp_path, nam
     assert "2 measurements are missing: sleeping" in " ".join(again.stdout.split())
     assert json.loads((out / "results.json").read_text())["passed"] is False
     assert "2 measurements are missing" in (out / "index.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="needs masks of signals")
+def test_a_process_that_still_imports_hears_no_interrupt(tmp_path):
+    program = tmp_path / "program.py"
+    program.write_text(STARTING)
+    done = subprocess.run(
+        [sys.executable, str(program)],
+        capture_output=True, text=True, check=False, timeout=120,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )  # fmt: skip
+    assert done.stderr == ""
+    assert done.stdout.split() == ["3", "0"]
+
+
+def test_processes_are_started_where_an_interrupt_is_thought_of():
+    sources = (ROOT / "cmverify").rglob("*.py")
+    starting = {p.name for p in sources if 'get_context("spawn")' in p.read_text(encoding="utf-8")}
+    assert starting == {"lifeline.py", "runner.py"}
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="needs masks of signals")
+def test_an_interrupt_waits_for_the_end_of_a_start():
+    heard = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: heard.append(number))
+    try:
+        with sheltered():
+            signal.raise_signal(signal.SIGINT)
+            assert not heard
+        assert heard == [signal.SIGINT]
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 
 def test_handlers_are_put_back():
