@@ -457,7 +457,7 @@ FAULTS = (
         "current density + 1 %", "solver.recovery.current_density", scaled(1.01), "recovery"
     ),
     Fault("Joule heat halved", "solver.recovery.joule_heat", scaled(0.5), "recovery"),
-    Fault("current of a lead + 1 %", "solver.problem.conditions.Load.lead",
+    Fault("current of a lead + 1 %", "solver.problem.loads.Load.lead",
           argument(1, times(1.01)), "loads"),
     Fault(
         "resistivities taken for conductivities",

@@ -56,9 +56,9 @@ def try_on_lattice(file: SceneFile, scene: Scene, source: Source, start: float) 
     """Evaluate conditions, and values at the start, where they will be needed."""
     from solver.geometry import Lattice, select
     from solver.problem import thickness
-    from solver.problem.conditions import at_time, evaluate
     from solver.problem.inclusions import phases_of
     from solver.problem.loading import edge_loads
+    from solver.problem.values import at_time, evaluate
 
     with source.at("discretisation"):
         family = scene.family()

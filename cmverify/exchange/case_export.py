@@ -228,7 +228,7 @@ def _held(parts: Discretisation, points: Array, count: int) -> Array:
 
     Functions are asked at the points themselves; what is no function has one value.
     """
-    from solver.problem.conditions import evaluate
+    from solver.problem.values import evaluate
 
     scene, lattice = parts.scene.at(0.0), parts.lattice
     nearest = lattice.tree.query(points - np.asarray(lattice.shift))[1]

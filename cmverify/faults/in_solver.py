@@ -353,29 +353,23 @@ FAULTS = (
         "loads",
     ),
     Fault(
-        "layers one cell too thin", "solver.problem.conditions.Support.layer", _thinner, "supports"
+        "layers one cell too thin", "solver.problem.supports.Support.layer", _thinner, "supports"
     ),
-    Fault(
-        "body force + 1 %", "solver.problem.conditions.Load.body_force", _load(times(1.01)), "loads"
-    ),
+    Fault("body force + 1 %", "solver.problem.loads.Load.body_force", _load(times(1.01)), "loads"),
     Fault(
         "body force with its components swapped",
-        "solver.problem.conditions.Load.body_force",
+        "solver.problem.loads.Load.body_force",
         _load(swapped()),
         "loads",
     ),
-    Fault(
-        "heat source + 1 %", "solver.problem.conditions.Load.source", _load(times(1.01)), "loads"
-    ),
+    Fault("heat source + 1 %", "solver.problem.loads.Load.source", _load(times(1.01)), "loads"),
     Fault(
         "heat source of the other sign",
-        "solver.problem.conditions.Load.source",
+        "solver.problem.loads.Load.source",
         _load(times(-1.0)),
         "loads",
     ),
-    Fault(
-        "body couple + 1 %", "solver.problem.conditions.Load.couple", _load(times(1.01)), "loads"
-    ),
+    Fault("body couple + 1 %", "solver.problem.loads.Load.couple", _load(times(1.01)), "loads"),
     Fault(
         "right-hand side + 1 %",
         "solver.problem.discretisation.Discretisation.right_hand_side",
@@ -496,7 +490,7 @@ FAULTS = (
     ),
     Fault(
         "pins that do not turn",
-        "solver.problem.conditions.Support.pin",
+        "solver.problem.supports.Support.pin",
         _without_turning,
         "supports",
     ),

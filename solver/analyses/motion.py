@@ -12,8 +12,8 @@ from ..arrays import Array
 from ..errors import NegativeCurvatureError, SceneError
 from ..linear.rotations import MasslessRotations
 from ..problem import Description, Discretisation, Forcing
-from ..problem.conditions import Value, evaluate
 from ..problem.rigid import parts
+from ..problem.values import Value, evaluate
 from ..state_file import StateFile
 from .recording import Log, Progress, Series, fingerprint, nearest
 from .stepping import (

@@ -36,7 +36,7 @@ from ..operators.eigenstrain import Eigenstrain
 from ..operators.mass import inertia
 from ..operators.thermal_force import thermal_force
 from ..problem import Description, Discretisation, Support
-from ..problem.conditions import Value, evaluate
+from ..problem.values import Value, evaluate
 from ..result import Result, Table
 from ..state import State
 from .registry import Analysis

@@ -34,8 +34,8 @@ from ..bonds import Cells
 from ..errors import ConvergenceError, SceneError
 from ..linear.shifted import Shifted
 from ..problem import Description, Discretisation, Forcing
-from ..problem.conditions import Value, evaluate
 from ..problem.rigid import parts
+from ..problem.values import Value, evaluate
 from ..result import Result, Table
 from ..state_file import StateFile
 from .recording import (

@@ -34,7 +34,7 @@ from ..bonds import Cells
 from ..errors import SceneError
 from ..material import ChiralTensor, PolarTensor
 from ..problem import Description, Discretisation, Forcing
-from ..problem.conditions import Value
+from ..problem.values import Value
 from ..result import Result, Table
 from .motion import Motion, Settings
 from .recording import History, Progress, checked_times

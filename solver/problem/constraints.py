@@ -25,7 +25,8 @@ from ..arrays import Array, Indices, Mask
 from ..errors import SceneError
 from ..geometry import Lattice
 from ..material import Moduli
-from .conditions import Support, evaluate
+from .supports import Support
+from .values import evaluate
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,8 +28,9 @@ from ..material import (
 from ..material.influence import influence
 from ..material.physics import Physics
 from . import thickness
-from .conditions import Load, Support
 from .inclusions import Inclusion, check
+from .loads import Load
+from .supports import Support
 from .tips import Tip, check_tip
 
 

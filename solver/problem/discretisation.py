@@ -19,9 +19,9 @@ from ..operators import BondOperator
 from ..operators.eigenstrain import Eigenstrain
 from . import cautions, inclusions, leads, loading, mechanisms, thickness, tips
 from . import constraints as constraints_of
-from .conditions import particle_volumes
 from .constraints import Constraints
 from .description import Description
+from .loads import particle_volumes
 
 #: Told of every scene that is discretised, at level DEBUG: who judges asks what was solved.
 _SCENES = logging.getLogger("solver.scenes")

@@ -1,6 +1,6 @@
 """What is prescribed and what acts, as arrays over particles and the surface's nodes.
 
-`solver.problem.conditions` says what a support or a load is; here those of a scene are laid on its
+`supports` and `loads` say what a support or a load is; here those of a scene are laid on its
 lattice, once for statics (`discretisation`), at every time for what is driven (`forcing`).
 """
 
@@ -32,8 +32,8 @@ from ..material import Moduli
 from ..operators import BondOperator
 from ..operators.eigenstrain import Eigenstrain
 from . import thickness
-from .conditions import evaluate
 from .description import Description
+from .values import evaluate
 
 
 def prescribed_values(scene: Description, lattice: Lattice, moduli: Moduli) -> tuple[Mask, Array]:

@@ -30,7 +30,7 @@ from ..errors import SceneError
 from ..geometry import Lattice
 from ..geometry.edge_quadrature import Quadrature
 from ..magnitude import LENGTHS, outside, require_positive
-from .conditions import evaluate
+from .values import evaluate
 
 # Share of a cell within an edge at which its thickness is asked.
 _WITHIN = 1e-3

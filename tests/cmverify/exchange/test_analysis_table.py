@@ -13,7 +13,7 @@ from cmverify.exchange.analysis_table import kind_of, scene_model, table_of
 from cmverify.exchange.refusal import SceneFileError
 from solver.analyses import Analysis, analyses
 from solver.geometry import Region, Where
-from solver.problem.conditions import Value
+from solver.problem.values import Value
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 

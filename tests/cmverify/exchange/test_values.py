@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cmverify.exchange.values import InTime, components, scalar, scalar_in_time
-from solver.problem.conditions import at_time, in_time
+from solver.problem.values import at_time, in_time
 
 X, Y = np.array([0.5, 2.0]), np.array([1.0, -1.0])
 

@@ -38,9 +38,9 @@ def test_every_fault_has_a_target_and_a_name_of_its_own():
 def test_loads_that_are_made_wrong_still_act():
     """A fault that cannot be run at all is caught by whatever runs it, and shows nothing."""
     changed = {
-        "solver.problem.conditions.Load.source": Load.source,
-        "solver.problem.conditions.Load.couple": Load.couple,
-        "solver.problem.conditions.Load.body_force": Load.body_force,
+        "solver.problem.loads.Load.source": Load.source,
+        "solver.problem.loads.Load.couple": Load.couple,
+        "solver.problem.loads.Load.body_force": Load.body_force,
     }
     lattice = Lattice(rectangle(1.0, 1.0), 0.25, 2)
     faults = [f for f in registry.all_faults() if f.target in changed]

@@ -5,7 +5,7 @@ import pytest
 
 from solver import ConductivityTensor, ElasticTensor, Load, Scene, SceneError, Support, rectangle
 from solver.problem import Discretisation, Forcing
-from solver.problem.conditions import at_time, in_time
+from solver.problem.values import at_time, in_time
 
 
 def elastic(surface):
