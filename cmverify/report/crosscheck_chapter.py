@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from cmverify.report import study_file
@@ -40,6 +41,16 @@ class CrossCheck:
         """Rows of a case."""
         return [row for row in self.rows if row.case == case]
 
+    @property
+    def now(self) -> str:
+        """What made the rows that are not kept from an earlier run, and when."""
+        return f"{self.fenicsx}; {self.started}"
+
+    @property
+    def makers(self) -> Mapping[str, int]:
+        """FEniCSx and time of every run whose rows are here, with how many they are."""
+        return Counter(row.made or self.now for row in self.rows)
+
 
 @dataclass(frozen=True)
 class Cell:
@@ -69,8 +80,8 @@ def keeping(new: CrossCheck, folder: Path, cases: Iterable[str]) -> CrossCheck:
     if old is None:
         return new
     own = set(cases)
-    kept = [row for row in old.rows if row.case not in own]
-    return CrossCheck(new.rows + kept, new.fenicsx or old.fenicsx, new.skipped, new.started)
+    kept = [replace(row, made=row.made or old.now) for row in old.rows if row.case not in own]
+    return replace(new, rows=new.rows + kept)
 
 
 def write(found: CrossCheck, folder: Path) -> None:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cmverify.errata import TESTS, Judgement, coverage_line
+from cmverify.report import pages
 from cmverify.report.picture import Picture
 from cmverify.run.results import write_text
 
@@ -51,10 +51,6 @@ def write_page(judged: Sequence[Judgement], path: Path) -> int:
     path : Path
         Of the HTML file; its figures are inside it.
     """
-    from jinja2 import Environment, StrictUndefined
-
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
-    resources = files("cmverify.report")
     by_number = {item.number: item for item in judged}
     foremost = [
         {
@@ -66,15 +62,32 @@ def write_page(judged: Sequence[Judgement], path: Path) -> int:
         for numbers, title, text, name in FOREMOST
         if any(number in by_number for number in numbers)
     ]
-    page = environment.from_string((resources / "errata.html").read_text()).render(
-        tests=_tests_seen_from(path.resolve().parent),
-        css=(resources / "style.css").read_text(),
-        coverage=coverage_line(judged),
-        foremost=foremost,
-        equations=[item for item in judged if item.equation],
-        statements=[item for item in judged if not item.equation],
-        failed=sum(item.failed for item in judged),
-        proved=sum(item.proof != "none" for item in judged),
+    wrong = [
+        (f"eq-{item.number.replace(' ', '-')}", f"Eq. {item.number}: wrong")
+        for item in judged
+        if item.equation and item.verdict == "wrong"
+    ]
+    page = (
+        pages.environment()
+        .get_template("errata.html")
+        .render(
+            css=pages.css(),
+            name="the paper, audited",
+            contents=[
+                ("foremost", "What matters most"),
+                ("equations", "Every numbered equation"),
+                *wrong,
+                ("statements", "Numbers and statements"),
+            ],
+            tests=_tests_seen_from(path.resolve().parent),
+            coverage=coverage_line(judged),
+            foremost=foremost,
+            equations=[item for item in judged if item.equation],
+            statements=[item for item in judged if not item.equation],
+            failed=sum(item.failed for item in judged),
+            proved=sum(item.proof != "none" for item in judged),
+            command="cmverify errata --page errata.html",
+        )
     )
     write_text(path, page)
     return sum(item.failed for item in judged)

@@ -47,6 +47,8 @@ class Row:
         That FEniCSx took, its start included.
     failure : str
         Why there is nothing to compare; empty if there is.
+    made : str
+        By which FEniCSx, and when, where that is another run than the rest's.
     """
 
     case: str
@@ -63,6 +65,7 @@ class Row:
     finer: float | None = None
     seconds: float = 0.0
     failure: str = ""
+    made: str = ""
 
     @property
     def passed(self) -> bool:

@@ -13,6 +13,7 @@ from cmverify.faults.fault import Fault, find
 from cmverify.faults.trial import Found
 from solver import Load, rectangle
 from solver.geometry import Lattice
+from tests.cmverify.report import browser
 
 NORM = "cmverify.judge.norms.relative_l2"
 PAIR = ("yardsticks", "judges")
@@ -137,6 +138,7 @@ def test_the_page_says_what_is_caught_and_what_is_not(tmp_path):
     assert "q, a/1: 2" in text
     assert "never called" in text
     assert "two &lt;b&gt;" in text
+    assert browser.dead_links(tmp_path / page.NAME) == []
 
 
 def test_an_unknown_fault_is_refused():

@@ -10,6 +10,7 @@ from cmverify import errata as audit
 from cmverify.cli import app
 from cmverify.report.errata_page import FOREMOST, write_page
 from references import errata as paper
+from tests.cmverify.report import browser
 
 cli = CliRunner()
 FEW = [paper.entry(n) for n in ("1", "37", "109", "Sect. 3.1.2 (K)")]
@@ -35,6 +36,8 @@ def test_every_foremost_mistake_has_its_figure(tmp_path):
     page = tmp_path / "errata.html"
     assert write_page([audit.judge(paper.entry(n)) for n in numbers], page) == 0
     assert page.read_text().count("data:image/svg+xml") == len(FOREMOST) == 3
+    # A page outside the checkout leads to the tests of this one.
+    assert [link for link in browser.dead_links(page) if link.startswith("#")] == []
 
 
 def test_a_proof_that_fails_is_seen(monkeypatch, tmp_path):

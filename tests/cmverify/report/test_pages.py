@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -49,6 +50,18 @@ def test_every_link_resolves(page, tmp_path):
     broken = tmp_path / "broken.html"
     broken.write_text('<a href="#gone">x</a><a href="https://a.b/c">y</a><p id="there">')
     assert browser.dead_links(broken) == ["#gone", "https://a.b/c"]
+
+
+def test_every_page_has_contents_a_way_to_the_top_and_a_dark_dress():
+    """Whoever writes a page of its own extends one of these two."""
+    folder = Path(pages.__file__).parent
+    files = [*folder.glob("*.html"), *folder.parent.rglob("*.py")]
+    whole = [path for path in files if "<!doctype" in path.read_text(encoding="utf-8")]
+    assert {path.name for path in whole} == {"study.html", "template.html"}
+    for path in whole:
+        text = path.read_text(encoding="utf-8")
+        for part in ('class="contents"', 'class="skip"', 'class="to-top"', 'content="light dark"'):
+            assert part in text
 
 
 def test_texts_stand_out_from_what_is_behind_them():

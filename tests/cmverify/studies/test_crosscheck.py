@@ -156,6 +156,10 @@ def test_rows_are_kept_beside_those_of_other_cases(monkeypatch, tmp_path, capsys
     assert [row.case for row in new.rows] == ["disc-exponential"]
     assert [row.case for row in chapter.read(tmp_path).rows] == ["disc-exponential", "other"]
     assert "1 of 1 problems agree" in capsys.readouterr().out
+    kept = chapter.read(tmp_path)
+    assert kept.makers == {new.now: 1, "old; then": 1}
+    crosscheck_command.crosschecked([disc()], QUICK, tmp_path, None, console())
+    assert chapter.read(tmp_path).makers == {"old; then": 1}  # skipped: it made nothing
     (tmp_path / chapter.NAME).write_text("{}")
     with pytest.raises(ValueError, match="no cross-check"):
         chapter.read(tmp_path)
