@@ -338,6 +338,9 @@ class Case:
     elements : mapping from a name to a callable
         Solves a small one of the finite-element problems that judge it and that no method of kind
         "fem" solves: `cmverify run --cross-check` has another code solve it too.
+    rivals : tuple of Method
+        Ways to the main figure that nothing is promised of: runs leave them alone, and the study
+        of work and precision measures them beside the others.
     """
 
     name: str
@@ -356,11 +359,13 @@ class Case:
     timed: bool = True
     poses: tuple[Pose, ...] = ()
     elements: Mapping[str, Callable[[], Any]] = field(default_factory=dict)
+    rivals: tuple[Method, ...] = ()
 
     def __post_init__(self) -> None:
+        every = [method.name for method in (*self.methods, *self.rivals)]
+        if len(set(every)) != len(every):
+            raise ValueError(f"case {self.name}: method names are not unique: {every}")
         names = [method.name for method in self.methods]
-        if len(set(names)) != len(names):
-            raise ValueError(f"case {self.name}: method names are not unique: {names}")
         if self.featured not in names:
             raise ValueError(f"case {self.name}: featured method {self.featured!r} is not declared")
         if self.primary not in self.quantities:

@@ -15,6 +15,7 @@ import numpy as np
 from cmverify.case import Array, Case, Check, Field, FieldSet, Level, Measurement, Method, OrderBand
 from cmverify.cases.common import adapters, warm
 from cmverify.cases.surfaces.bodies import symmetric
+from cmverify.exchange.statement import Pose, Statement, Target, laid_out
 from cmverify.faults.changes import argument, result, scaled
 from cmverify.faults.fault import Fault
 from cmverify.judge.norms import relative_l2, worst
@@ -124,14 +125,12 @@ def patches(scale: float, n: int) -> Measurement:
     )
 
 
-def plate(scale: float, n: int) -> Measurement:
-    """A stiff disc in a plate under a uniform stress far away."""
-    from references.analytic.inclusion import ElasticInclusion
-    from solver import ElasticTensor, Inclusion, Scene, Support, disc, recovery, rectangle
+def scene_of(exact: Any, n: int) -> Any:
+    """A disc in a plate at spacing a/n, held in a layer as the closed form has it."""
+    from solver import ElasticTensor, Inclusion, Scene, Support, disc, rectangle
 
-    exact = ElasticInclusion(PLATE, (scale * DISC[0], DISC[1]), FAR, RADIUS)
     held = Support.layer(M + 0.5, displacement=exact.displacement, rotation=exact.rotation)
-    scene = Scene(
+    return Scene(
         rectangle(2.0, 2.0),
         1.0 / n,
         ElasticTensor.isotropic(*PLATE),
@@ -139,7 +138,28 @@ def plate(scale: float, n: int) -> Measurement:
         m=M,
         inclusions=[Inclusion(disc(RADIUS), ElasticTensor.isotropic(*DISC))],
     )
-    solution = scene.solve()
+
+
+def state(n: int) -> Statement:
+    """Disc and plate, and what is judged of an answer: every particle."""
+    from references.analytic.inclusion import ElasticInclusion
+
+    exact = ElasticInclusion(PLATE, DISC, FAR, RADIUS)
+    scene = scene_of(exact, n)
+    points = laid_out(scene).lattice.places
+    wanted = exact.displacement(*points.T)
+    target = Target("displacement", "displacement", "m", wanted, points=points,
+                    columns=("u1", "u2"))  # fmt: skip
+    return Statement(scene, (target,))
+
+
+def plate(scale: float, n: int) -> Measurement:
+    """A stiff disc in a plate under a uniform stress far away."""
+    from references.analytic.inclusion import ElasticInclusion
+    from solver import recovery
+
+    exact = ElasticInclusion(PLATE, (scale * DISC[0], DISC[1]), FAR, RADIUS)
+    solution = scene_of(exact, n).solve()
     x, y = solution.points.T
     wanted, stress = exact.displacement(x, y), symmetric(recovery.stress(solution))
     there = exact.stress_at(x, y)
@@ -163,6 +183,53 @@ def plate(scale: float, n: int) -> Measurement:
         FieldSet(solution.points[whole], items, spacing=1.0 / n),
     )
 
+
+def fem(order: int, graded: bool, n: int) -> Measurement:
+    """Disc and plate by scikit-fem, exact displacements on the plate's edge; at our particles.
+
+    P2 takes elements of twice the size, so that unknowns compare; `graded` has chords of the
+    interface a quarter of that.
+    """
+    from references.analytic.inclusion import ElasticInclusion
+    from references.fem import general
+    from solver import ElasticTensor
+
+    exact = ElasticInclusion(PLATE, DISC, FAR, RADIUS)
+    size = order / n
+    body, meshing = adapters.timed_mesh(_meshed, size, chord=size / 4 if graded else size)
+    inside = np.hypot(*body.points[body.triangles].mean(axis=1).T) < RADIUS
+    tensors = np.stack([ElasticTensor.isotropic(*one).voigt for one in (PLATE, DISC)])
+
+    def held(nodes: Array, edge: Any) -> Array:
+        return np.asarray(np.where(edge[:, None], exact.displacement(*nodes.T), np.nan))
+
+    seconds = {"meshing": meshing}
+    with adapters.stopwatch(seconds, "solve"):
+        solution = general.solve(
+            body, tensors, inside.astype(np.int64), held, general.Acting(), order=order
+        )
+    target = state(n).targets[0]
+    return Measurement(
+        solution.values.size,
+        {"displacement": target.error(solution.at(target.points))},
+        seconds,
+        adapters.fem_statistics(body, order),
+    )
+
+
+def _meshed(size: float, chord: float) -> Any:
+    """The plate around the disc's polygon, whose corners lie on the circle."""
+    from references.fem.polygons import polygons
+
+    count = int(np.ceil(2 * np.pi * RADIUS / chord))
+    angles = 2 * np.pi * np.arange(count) / count
+    circle = RADIUS * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    square = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+    return polygons([(square, [circle]), (circle, [])], size)
+
+
+#: Spacings of the disc in a plate.
+LADDER = {Level.QUICK: (20,), Level.STANDARD: (20, 40), Level.PAPER: (20, 40, 80)}
 
 CASES = (
     Case(
@@ -215,8 +282,7 @@ CASES = (
         ),
         methods=(
             Method("bond/lattice", "bond", partial(plate, 1.0),
-                   {Level.QUICK: (20,), Level.STANDARD: (20, 40), Level.PAPER: (20, 40, 80)},
-                   partial(warm.statics, "extrapolated")),
+                   LADDER, partial(warm.statics, "extrapolated")),
         ),
         checks=(
             *(
@@ -238,6 +304,8 @@ CASES = (
         },
         primary="displacement",
         featured="bond/lattice",
+        poses=(Pose("bond/lattice", state),),
+        rivals=adapters.elements(fem, LADDER),
     ),
 )  # fmt: skip
 

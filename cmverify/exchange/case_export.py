@@ -77,10 +77,18 @@ def files_in(folder: Path) -> list[Path]:
 
 
 def write_case(case: Case, pose: Pose, n: int, folder: Path) -> list[Path]:
-    """Write all files of a case at spacing length/n; returns their paths."""
+    """Write all files of a case at spacing length/n; returns their paths.
+
+    Raises
+    ------
+    ValueError
+        If the body has inclusions: the files know one solid.
+    """
     from solver.result import write_arrays
 
     statement = pose.state(n)
+    if statement.scene.inclusions:
+        raise ValueError(f"{case.name} is of several solids, and the files hold one")
     parts = laid_out(statement.scene)
     folder.mkdir(parents=True, exist_ok=True)
     names = [_SYMBOLS.get(u, u) for u in statement.scene.physics.unknowns][: len(parts.values)]

@@ -140,7 +140,7 @@ def _draw_in_processes(
 
 def _without_functions(case: Case) -> Case:
     methods = tuple(replace(m, run=_not_here, warm_up=nothing_to_compile) for m in case.methods)
-    return replace(case, methods=methods, elements={})
+    return replace(case, methods=methods, elements={}, rivals=())
 
 
 def _not_here(resolution: int) -> Measurement:

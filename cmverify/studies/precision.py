@@ -3,8 +3,9 @@
 Two passes that do not disturb each other. The error pass measures each point once, and the memory
 it takes. The timing pass then repeats set-up and solve alone, one point after the other in this
 process, with compiled code warm; times are medians, with the quartiles as their spread. A
-bond method is varied one choice at a time (calibration, m, surface, tolerance) on the problem that
-its case poses to other programs.
+bond method is varied one choice at a time (calibration, m, area rule, tolerance) on the problem
+that its case poses to other programs, and solved as an assembled matrix too; the case's rivals
+stand beside.
 """
 
 from __future__ import annotations
@@ -24,17 +25,20 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from cmverify.case import Case, Level, Measurement, Method
+from cmverify.studies import assembled
 
 if TYPE_CHECKING:
     from cmverify.exchange.statement import Pose
 
 #: Cases that carry it are measured if none is named.
 TAG = "work-precision"
-#: What is changed, one at a time, on the bond method of a posed problem. No larger m: layers that
-#: are prescribed hold whole families up to m = 5.
+#: What is changed, one at a time, on the bond method of a posed problem. No larger m than its own:
+#: layers that are prescribed hold whole families up to that.
 VARIANTS: tuple[tuple[str, dict[str, Any], float], ...] = (
     ("m = 3", {"m": 3}, 1e-10),
     ("m = 4", {"m": 4}, 1e-10),
+    ("continuum", {"calibration": "continuum"}, 1e-10),
+    ("full areas", {"area_rule": "full"}, 1e-10),
     ("tolerance 1e-4", {}, 1e-4),
     ("tolerance 1e-6", {}, 1e-6),
 )
@@ -80,30 +84,30 @@ class Point:
 
 
 def methods_of(case: Case) -> tuple[Method, ...]:
-    """The case's own, and its bond method varied where the case poses a static problem."""
+    """The case's own, its rivals, and its bond method varied and on the assembled matrix.
+
+    Scenes are changed where the case poses a static problem.
+    """
+    known = (*case.methods, *case.rivals)
     if not case.poses:
-        return case.methods
+        return known
     pose = case.poses[0]
     own = case.method(pose.method)
+    usual = assembled.method(case, pose)
+    if usual is None:
+        return known
+    statement = pose.state(own.coarsest)
+    static = statement.targets[0].key in assembled.FIELDS
     varied = tuple(
         Method(
             f"{own.name}, {name}", "bond", partial(vary, case, pose, changes, tolerance),
             own.resolutions, own.warm_up,
         )
         for name, changes, tolerance in VARIANTS
-        if own.kind == "bond" and _static(pose, own.coarsest)
-        if f"{own.name}, {name}" not in {m.name for m in case.methods}
+        if static and not any(method.name.endswith(name) for method in known)
+        if changes.get("m", 0) < statement.scene.m
     )  # fmt: skip
-    return (*case.methods, *varied)
-
-
-def _static(pose: Pose, n: int) -> bool:
-    target = pose.state(n).targets[0]
-    return target.points is not None and target.times is None and target.key in _FIELDS
-
-
-#: Fields of a static solution that targets are judged by.
-_FIELDS = ("displacement", "temperature", "potential")
+    return (*known, *varied, usual)
 
 
 def vary(case: Case, pose: Pose, changes: dict[str, Any], tolerance: float, n: int) -> Measurement:
@@ -119,23 +123,13 @@ def vary(case: Case, pose: Pose, changes: dict[str, Any], tolerance: float, n: i
     statement = pose.state(n)
     target = statement.targets[0]
     solution = replace(statement.scene, **changes).solve(tolerance=tolerance)
-    assert target.points is not None
-    places = _places(solution.points, target.points, statement.scene.spacing)
-    values = np.asarray(getattr(solution, target.key))[places]
+    values = np.asarray(getattr(solution, target.key))
+    values = assembled.at(solution.points, target.points, statement.scene.spacing, values)
     return Measurement(
         unknowns=solution.statistics.unknowns,
         quantities={case.primary: target.error(values)},
         seconds=adapters.solver_seconds(solution.statistics),
     )
-
-
-def _places(points: np.ndarray, wanted: np.ndarray, spacing: float) -> np.ndarray:
-    """Indices of the particles at these places."""
-    known = {tuple(key): i for i, key in enumerate(np.rint(points / spacing * 8).astype(int))}
-    try:
-        return np.array([known[tuple(k)] for k in np.rint(wanted / spacing * 8).astype(int)])
-    except KeyError:
-        raise ValueError("the changed scene has other particles than the posed one") from None
 
 
 def measure(

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cmverify.case import Array, Curve
+from cmverify.case import Array, Curve, Level, Measurement, Method
 
 if TYPE_CHECKING:
     from references.fem.mesh import Mesh
@@ -125,6 +125,20 @@ def fem_statistics(mesh: Mesh, order: int) -> dict[str, float | int | str]:
         "order": order,
         "method": "sparse LU",
     }
+
+
+def elements(
+    run: Callable[[int, bool, int], Measurement],
+    resolutions: Mapping[Level, tuple[int, ...]],
+    graded: bool = True,
+) -> tuple[Method, ...]:
+    """Linear, quadratic, graded quadratic elements, for `Case.rivals`: `run(order, graded, n)`."""
+    kinds = [("fem/P1", 1, False), ("fem/P2", 2, False), ("fem/P2 graded", 2, True)]
+    return tuple(
+        Method(name, "fem", partial(run, order, finer), resolutions)
+        for name, order, finer in kinds
+        if graded or not finer
+    )
 
 
 @lru_cache(maxsize=6)

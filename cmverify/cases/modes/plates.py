@@ -20,7 +20,7 @@ from cmverify.case import (
     OrderBand,
 )
 from cmverify.cases.common import warm
-from cmverify.cases.common.adapters import Stored, stopwatch
+from cmverify.cases.common.adapters import Stored, fem_statistics, stopwatch, timed_mesh
 from cmverify.cases.common.materials import isotropic, orthotropic, turned
 from cmverify.cases.modes.pairing import clusters, pair
 from cmverify.exchange.statement import LARGEST, Pose, Statement, Target
@@ -185,6 +185,38 @@ def bond(plate: Plate, n: int, stiffer: float = 1.0) -> Measurement:
     )
 
 
+def fem(plate: Plate, order: int, graded: bool, n: int) -> Measurement:
+    """Frequencies by scikit-fem; P2 takes elements of twice the size, `graded` ones at the feature.
+
+    They are judged by finer elements, good to 6e-5: what errs by less than that is not told apart.
+    """
+    from references.fem.modes import in_plane_modes
+
+    wanted = reference(plate).frequencies
+    wanted = wanted[: judged_modes(wanted)]
+    body, meshing = timed_mesh(_meshed, order / n, feature=plate.feature, graded=graded)
+    seconds = {"meshing": meshing}
+    with stopwatch(seconds, "solve"):
+        found = in_plane_modes(body, plate.voigt, 1.0, JUDGED + 5, order=order)
+    errors = found.frequencies[: len(wanted)] / wanted - 1
+    return Measurement(
+        found.unknowns,
+        {"frequency": float(np.abs(errors).max())},
+        seconds,
+        fem_statistics(body, order),
+    )
+
+
+def _meshed(size: float, feature: str, graded: bool) -> Any:
+    from references.fem.mesh import rectangle
+    from references.generators_dynamic import plate_mesh
+
+    if graded:
+        return plate_mesh(feature, round(1 / size), HOLE, CRACK[1][0] - CRACK[0][0])
+    holes = [(0.0, 0.0, HOLE)] if feature == "hole" else []
+    return rectangle(1.0, 1.0, size, holes, [CRACK] if feature == "crack" else [])
+
+
 PLATES = (
     Plate("isotropic ν=0.3", "0.3"),
     Plate("isotropic ν=0.45, volume", "0.45", surface="volume"),
@@ -293,6 +325,18 @@ CASES = (
         poses=tuple(
             Pose(f"bond/{plate.name}", partial(state, plate), plate.name)
             for plate in sorted(PLATES, key=lambda plate: plate.name not in QUICK)
+        ),
+        rivals=tuple(
+            Method(
+                f"fem/P{order}{' graded' * graded}, {plate.name}",
+                "fem",
+                partial(fem, plate, order, graded),
+                _ladder(plate),
+            )
+            for plate in PLATES
+            if plate.feature or plate.name in QUICK
+            for order, graded in ((1, False), (2, False), (2, True))
+            if plate.feature or not graded
         ),
     ),
 )

@@ -40,7 +40,7 @@ def speed(
     from cmverify.run import folder
     from cmverify.run.environment import describe
     from cmverify.run.results import write_text
-    from cmverify.studies.speed import measure, modes, page, verdicts
+    from cmverify.studies.speed import accuracy, measure, modes, page, verdicts
 
     screen = console()
     try:
@@ -73,6 +73,11 @@ def speed(
             "Whole solve",
             lambda: measure.solvers(resolution),
             verdicts.of_solvers if judged else None,
+        ),
+        (
+            "To an error of 1e-6, smooth field in the disc",
+            accuracy.to_an_error,
+            verdicts.of_accuracy if judged else None,
         ),
         (
             "Natural modes",

@@ -21,11 +21,11 @@ from typing import Any, get_args
 import numba
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import LinearOperator, cg
 from threadpoolctl import threadpool_limits
 
 from cmverify.case import Array
 from cmverify.cases.crack_tip import STIFFNESS
+from cmverify.studies.assembled import conjugate_gradients
 from cmverify.studies.speed import peers
 from cmverify.studies.speed.scenes import crack_tip, kernel_scenes, static_scenes
 from references.analytic import lekhnitskii
@@ -319,35 +319,18 @@ def solvers(resolution: int = 120, tolerance: float = 1e-8, repeats: int = 3) ->
 
 def _scipy_cg(problem: Discretisation, tolerance: float, base: float) -> Timing:
     """SciPy CG with block Jacobi on the CSR matrix, assembly included."""
-    operator = problem.operator
-    rhs = problem.right_hand_side()
     cpu, wall = process_time(), perf_counter()
-    matrix = to_csr(operator)
+    matrix = to_csr(problem.operator)
     assembled = process_time() - cpu
-    inverse = np.linalg.inv(operator.block_diagonal)
-    c = operator.components
-    jacobi = LinearOperator(
-        operator.shape,
-        matvec=lambda r: np.einsum("pij,jp->ip", inverse, r.reshape(c, -1)).ravel(),
-        dtype=np.float64,
-    )
-    count = [0]
-    x, _ = cg(
-        matrix,
-        rhs,
-        rtol=tolerance,
-        maxiter=5000,
-        M=jacobi,
-        callback=lambda _: count.__setitem__(0, count[0] + 1),
-    )
+    x, iterations = conjugate_gradients(problem, matrix, tolerance, 5000)
     cpu, wall = process_time() - cpu, perf_counter() - wall
     return _row(
         "SciPy CG, block Jacobi, CSR",
         cpu,
         wall,
         base,
-        iterations=count[0],
-        residual=_residual(problem, x, rhs),
+        iterations=iterations,
+        residual=_residual(problem, x, problem.right_hand_side()),
         assembly_s=assembled,
     )
 

@@ -13,15 +13,13 @@ from typing import Any
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import LinearOperator, eigsh, splu
 from threadpoolctl import threadpool_limits
 
 from cmverify.case import Array
 from cmverify.cases.modes.tetrachiral import scene
+from cmverify.studies.assembled import pencil, shift_invert, superlu
 from cmverify.studies.speed.measure import Timing, pardiso
 from solver import Discretisation, modes
-from solver.operators.assembled import to_csr
-from solver.operators.mass import inertia
 
 COUNT = 10
 
@@ -38,11 +36,7 @@ def compare(resolution: int) -> list[Timing]:
     found = modes.solve(body, COUNT)
     ours = process_time() - begun
     discretisation = Discretisation.of(body, free=True)
-    operator = discretisation.operator
-    matrix = to_csr(operator)
-    c = operator.components
-    weights = inertia(discretisation.volumes, operator.active, body.physics, c)
-    mass = sparse.diags_array(weights.ravel())
+    matrix, mass = pencil(discretisation)
     squares = found.frequencies**2 * float(body.density or 0.0)
     rows = [
         Timing(
@@ -56,7 +50,7 @@ def compare(resolution: int) -> list[Timing]:
         )
     ]
     shift = -0.5 * float(squares[0])
-    solvers: dict[str, Any] = {"SciPy eigsh, SuperLU": _superlu}
+    solvers: dict[str, Any] = {"SciPy eigsh, SuperLU": superlu}
     if find_spec("sksparse") is not None:
         solvers["SciPy eigsh, CHOLMOD"] = _cholmod
     if find_spec("pypardiso") is not None:
@@ -64,7 +58,7 @@ def compare(resolution: int) -> list[Timing]:
     for name, factorise in solvers.items():
         with threadpool_limits(limits=1):
             begun = process_time()
-            values, vectors = _shift_invert(matrix, mass, shift, factorise)
+            values, vectors = shift_invert(matrix, mass, shift, factorise, COUNT + 3)
             spent = process_time() - begun
         rows.append(_row(name, spent, ours, values, vectors, matrix, mass, squares))
     if find_spec("slepc4py") is not None:
@@ -94,28 +88,6 @@ def _row(
         size = np.linalg.norm((mass @ vectors[:, 3:]) * values[3:], axis=0)
         found["residual"] = float((np.linalg.norm(left, axis=0) / size).max())
     return Timing(name, found)
-
-
-def _shift_invert(
-    matrix: sparse.csr_array, mass: sparse.dia_array, shift: float, factorise: Any
-) -> tuple[Array, Array]:
-    solve = factorise((matrix - shift * mass).tocsc())
-    inverse = LinearOperator(matrix.shape, matvec=solve, dtype=np.float64)
-    start = np.random.default_rng(0).standard_normal(matrix.shape[0])
-    values, vectors = eigsh(
-        matrix, COUNT + 3, M=mass, sigma=shift, OPinv=inverse, v0=start, tol=1e-10
-    )
-    order = np.argsort(values)
-    return values[order], vectors[:, order]
-
-
-def _superlu(matrix: sparse.csc_array) -> Any:
-    return splu(
-        matrix,
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    ).solve
 
 
 def _cholmod(matrix: sparse.csc_array) -> Any:

@@ -70,6 +70,15 @@ def of_modes(rows: list[Timing]) -> list[Verdict]:
     return found
 
 
+def of_accuracy(rows: list[Timing]) -> list[Verdict]:
+    """Less time to one error than quadratic finite elements take, beyond the spread."""
+    return [
+        _at_least(f"{row.name}: CPU seconds to one error ÷ ours, lower quartile",
+                  row.values["from"], 1.0)
+        for row in rows[1:]
+    ]  # fmt: skip
+
+
 def of_growth(rows: list[Timing]) -> list[Verdict]:
     """Twelve iterations at every spacing; a million particles in 4 GB at 1.5 times the cost."""
     found = [_at_most(f"{row.name}: iterations", row.values["iterations"], 12) for row in rows]

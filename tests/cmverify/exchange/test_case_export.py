@@ -110,6 +110,13 @@ def test_what_is_not_posed_is_refused_by_name():
         pose_of(registry.get("free-plates"), "star")
 
 
+def test_files_that_hold_one_solid_are_not_written_of_two(tmp_path):
+    case = registry.get("bimaterial-disc")
+    with pytest.raises(ValueError, match="of several solids"):
+        write_case(case, case.poses[0], 10, tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_norms_see_one_per_cent_and_rigid_motions_where_they_should():
     points = np.random.default_rng(1).normal(size=(20, 2))
     u = np.stack([points[:, 0], 0 * points[:, 1]], axis=-1)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cmverify.studies.speed import measure, modes, page, peers, verdicts
+from cmverify.studies.speed import accuracy, measure, modes, page, peers, verdicts
 from cmverify.studies.speed.measure import Timing
 from cmverify.studies.speed.scenes import crack_tip
 from solver import Discretisation
@@ -27,6 +27,18 @@ def test_alternative_solvers_reach_the_same_residual() -> None:
     assert rows[0].name == "bond solver, two-level CG, 1 thread"
     assert "SciPy CG, block Jacobi, CSR" in [row.name for row in rows]
     assert all(row.values["residual"] <= 1.01e-8 for row in rows)
+
+
+def test_both_get_to_the_error_with_the_coarsest_that_does() -> None:
+    ours, theirs = accuracy.to_an_error(2e-5, rounds=2)
+    assert (ours.name, theirs.name) == ("bond/positive, a/20", "fem/P2, a/20")
+    for row in (ours, theirs):
+        assert 1e-7 < row.values["error"] <= 2e-5
+        assert row.values["from"] <= row.values["slower"] <= row.values["to"]
+    assert ours.values["slower"] == 1.0
+    assert [v.passed for v in verdicts.of_accuracy([ours, ours])] == [True]
+    slow = replace(theirs, values={**theirs.values, "from": 0.9})
+    assert [v.passed for v in verdicts.of_accuracy([ours, slow])] == [False]
 
 
 def test_peers_know_the_rigid_motions_and_solve_the_same_system() -> None:

@@ -1,0 +1,113 @@
+"""CPU seconds to one error, beside quadratic finite elements: the smooth field in the disc.
+
+exp(x1 − 2 x2) cos x2 is no polynomial, so that both converge at their orders, two and three. Each
+takes the coarsest resolution that reaches the error over the same particles; then both are timed
+in turns, so that a drifting machine drifts for both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from time import process_time
+from typing import Any
+
+import numpy as np
+
+from cmverify.cases import disc
+from cmverify.cases.common import adapters
+from cmverify.judge.norms import relative_l2
+from cmverify.studies.speed.measure import Timing
+
+#: Spacings a/n that are tried, coarse ones first; elements have twice the size, as in the case.
+RESOLUTIONS = tuple(range(20, 160, 5))
+#: Of the bonds: a hundredth of the error or less.
+RESIDUAL = 1e-8
+
+
+def bonds(n: int) -> tuple[Callable[[], Any], Callable[[Any], float]]:
+    """What solves by bonds at spacing a/n, scene and set-up included, and what judges that."""
+    exact = disc.EXPONENTIAL.exact()
+
+    def solve() -> Any:
+        return disc.scene_of(disc.EXPONENTIAL, "positive", n).solve(tolerance=RESIDUAL)
+
+    def error(solution: Any) -> float:
+        free = ~solution.prescribed
+        return relative_l2(solution.temperature[free], exact.value(*solution.points[free].T))
+
+    return solve, error
+
+
+def elements(n: int) -> tuple[Callable[[], Any], Callable[[Any], float]]:
+    """What solves by scikit-fem on a mesh that is there, and what judges that."""
+    from references.fem import conduction, mesh
+
+    exact, conductivity = disc.EXPONENTIAL.exact(), disc.EXPONENTIAL.conductivity
+    body, _ = adapters.timed_mesh(mesh.disc, 2 / n)
+    points = adapters.free_points(n)
+
+    def solve() -> Any:
+        return conduction.steady_conduction(body, conductivity, exact.value, order=2)
+
+    def error(solution: Any) -> float:
+        return relative_l2(solution.at(points), exact.value(*points.T))
+
+    return solve, error
+
+
+def to_an_error(error: float = 1e-6, rounds: int = 15) -> list[Timing]:
+    """CPU seconds of bonds and of quadratic elements until the temperature errs by no more.
+
+    The bonds' set-up, the elements' assembly and factorisation count; meshing, compilation and
+    the evaluation of errors do not.
+
+    Returns
+    -------
+    list of Timing
+        Values: ``unknowns``, ``error``, ``cpu_s`` (median), ``slower`` (median over the rounds of
+        the ratio to the bonds' CPU seconds) with its quartiles ``from`` and ``to``.
+
+    Raises
+    ------
+    ValueError
+        If one of them does not get there.
+    """
+    found = {
+        name: _coarsest(name, way, error)
+        for name, way in (("bond/positive", bonds), ("fem/P2", elements))
+    }
+    times = np.array([[_cpu(solve) for _, _, _, solve in found.values()] for _ in range(rounds)])
+    ratios = times / times[:, :1]
+    rows = []
+    for k, (name, (n, unknowns, reached, _)) in enumerate(found.items()):
+        low, middle, high = np.percentile(ratios[:, k], (25, 50, 75))
+        values = {
+            "unknowns": unknowns,
+            "error": reached,
+            "cpu_s": float(np.median(times[:, k])),
+            "slower": float(middle),
+            "from": float(low),
+            "to": float(high),
+        }
+        rows.append(Timing(f"{name}, a/{n}", values))
+    return rows
+
+
+def _coarsest(name: str, way: Any, error: float) -> tuple[int, int, float, Callable[[], Any]]:
+    """Resolution, unknowns, error and solve of the first that is good enough."""
+    for n in RESOLUTIONS:
+        solve, judge = way(n)
+        solution = solve()
+        reached = judge(solution)
+        if reached <= error:
+            unknowns = getattr(solution, "unknowns", None)
+            if not isinstance(unknowns, int):  # a field of all of them, in ours
+                unknowns = solution.statistics.unknowns
+            return n, unknowns, reached, solve
+    raise ValueError(f"{name} does not err by {error:g} or less at a/{RESOLUTIONS[-1]}")
+
+
+def _cpu(solve: Callable[[], Any]) -> float:
+    begun = process_time()
+    solve()
+    return process_time() - begun
