@@ -209,6 +209,7 @@ def fem(order: int, graded: bool, n: int) -> Measurement:
             body, tensors, inside.astype(np.int64), held, general.Acting(), order=order
         )
     target = state(n).targets[0]
+    assert target.points is not None
     return Measurement(
         solution.values.size,
         {"displacement": target.error(solution.at(target.points))},

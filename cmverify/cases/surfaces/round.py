@@ -193,6 +193,7 @@ def fem(problem: Problem, order: int, graded: bool, n: int) -> Measurement:
         body, problem.voigt, tractions={side: pull(n) for side, n in normals.items()}, order=order
     )
     target = state(problem, n).targets[0]
+    assert target.points is not None
     return Measurement(
         solution.unknowns,
         {"displacement": target.error(solution.at(target.points))},
@@ -201,10 +202,10 @@ def fem(problem: Problem, order: int, graded: bool, n: int) -> Measurement:
     )
 
 
-def _holed(size: float, **options: float) -> Any:
+def _holed(size: float, hole_size: float | None = None) -> Any:
     from references.fem import mesh
 
-    return mesh.rectangle(1.0, 1.0, size, [(0.0, 0.0, RADIUS)], **options)
+    return mesh.rectangle(1.0, 1.0, size, [(0.0, 0.0, RADIUS)], hole_size=hole_size)
 
 
 def _around_the_hole(

@@ -4,7 +4,6 @@ import csv
 import json
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -12,7 +11,7 @@ from cmverify.case import Level
 from cmverify.cases import registry
 from cmverify.cli import app
 from cmverify.report import precision_chapter
-from cmverify.studies import assembled, precision
+from cmverify.studies import precision
 from tests.cmverify.toy_registry import toy
 
 P = precision.Point("c", "a", "bond", 10, 9, 1e-3, 1.0, 0.9, 1.1, 5, 0.0, 0, "again")
@@ -63,36 +62,6 @@ def test_a_posed_problem_is_varied_one_choice_at_a_time():
     assert loose.quantities[case.primary] > same.quantities[case.primary]
     with pytest.raises(ValueError, match="other particles"):
         precision.vary(case, pose, {"spacing": 0.07}, 1e-6, 10)
-
-
-@pytest.mark.parametrize(("name", "finer"), [("bimaterial-disc", "fem/P2 graded"),
-                                             ("hole-tractions-anisotropic", "fem/P2 graded"),
-                                             ("free-plates", "fem/P2, mild 30°")])  # fmt: skip
-def test_rivals_and_the_assembled_matrix_solve_the_same_problem(name, finer):
-    case = registry.get(name)
-    methods = {m.name: m for m in precision.methods_of(case)}
-    own = case.poses[0].method
-    n = case.method(own).coarsest
-    error = case.method(own).run(n).quantities[case.primary]
-    usual = methods[f"{own}, assembled"].run(n)
-    assert usual.quantities[case.primary] == pytest.approx(error, rel=1e-4)
-    rough = methods[finer.replace("P2 graded", "P1").replace("P2", "P1")].run(n)
-    fine = methods[finer].run(n)
-    assert fine.quantities[case.primary] < 0.3 * rough.quantities[case.primary] < 0.02
-    assert fine.total_seconds > 0
-    larger = [m for m in methods if m.endswith(("m = 3", "m = 4"))]
-    assert len(larger) == (2 if name.startswith("hole") else 0)  # the others have m = 3
-
-
-def test_what_the_assembled_matrix_cannot_solve_is_no_method():
-    assert assembled.method(*_posed("lamb")) is None
-    with pytest.raises(ValueError, match="other particles"):
-        assembled.at(np.zeros((1, 2)), np.ones((1, 2)), 0.1, np.zeros(1))
-
-
-def _posed(name):
-    case = registry.get(name)
-    return case, case.poses[0]
 
 
 def test_cases_of_the_study_are_tagged():
