@@ -65,6 +65,8 @@ ELSEWHERE = {
     "cmverify/exchange/beforehand.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/exchange/body_tables.py": "tests/cmverify/exchange/test_model.py",
     "cmverify/exchange/finite_elements.py": "tests/cmverify/exchange/test_comparison.py",
+    "cmverify/exchange/quantities.py": "tests/cmverify/exchange/test_comparison.py",
+    "cmverify/exchange/mirrored_coupled.py": "tests/cmverify/exchange/test_mirrored.py",
     "cmverify/exchange/solve_command.py": "tests/cmverify/exchange/test_scene_file.py",
     "cmverify/exchange/shapes.py": "tests/cmverify/exchange/test_model.py",
     "cmverify/exchange/table.py": "tests/cmverify/exchange/test_model.py",

@@ -34,8 +34,8 @@ def print_cases(screen: Console, cases: Sequence[Case]) -> None:
 def print_differences(screen: Console, compared: Comparison) -> None:
     """How far a scene's fields are from those of finite elements."""
     rows = [
-        [one.quantity, f"{one.l2:.2e}", f"{one.largest:.2e}", f"({one.at[0]:.4g}, {one.at[1]:.4g})",
-         f"{one.own:.1e}"]
+        [one.quantity, f"{one.l2:.2e}", f"{one.largest:.2e}",
+         "" if one.at is None else f"({one.at[0]:.4g}, {one.at[1]:.4g})", f"{one.own:.1e}"]
         for one in compared.differences
     ]  # fmt: skip
     title = (

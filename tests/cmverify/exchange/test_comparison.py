@@ -156,7 +156,8 @@ def test_a_result_is_kept_where_finite_elements_refuse(tmp_path, monkeypatch):
 
 def test_heat_in_two_solids(tmp_path):
     temperature, flux = compared(tmp_path, BODY + HEAT).differences
-    assert temperature.l2 < 0.06, temperature
+    # Less its mean; a third of it at half the spacing.
+    assert temperature.l2 < 0.09, temperature
     assert flux.l2 < 0.15, flux
 
 
@@ -226,7 +227,7 @@ def test_particles_of_a_layer_are_held_whatever_their_rotation(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (SOLID + HELD + "[modes]\ncount = 2\n", r"\[modes\] .*no \[modes\] here"),
+        (SOLID + HELD + "[waves]\nend = 2.0\n", r"\[waves\] .*no \[waves\] here: their meshes"),
         (SOLID + HELD + "[fracture]\nG1 = 1.0\nstop = 1.0\n", r"\[fracture\] .*no \[fracture\]"),
         (SOLID + HELD + '[[load]]\nkind = "couple"\nvalue = 1.0\n', r"\[load #1\] .*body couples"),
         (SOLID + HELD + '[[support]]\nkind = "pin"\nwhere = "x > 0"\n', r"\[support #2\] .*'pin'"),
