@@ -246,7 +246,7 @@ FAULTS = (
     Fault("thermal forces at surfaces + 1 %", f"{E}.surface_load", scaled(1.01), "thermal"),
     Fault(
         "total strain breaks bonds",
-        "solver.fracture.breaking._free_strains",
+        "solver.fracture.breaking.free_strains",
         result(lambda free: free[:, :, :0]),
         "thermal",
     ),

@@ -42,7 +42,7 @@ def afford(
         len(scene.physics.unknowns),
         scene.surface,
         sum(dist(a, b) for crack in file.crack for a, b in pairwise(crack.path)),
-        file.fracture is not None or getattr(file, "sensing", None) is not None,
+        any(getattr(file, name, None) is not None for name in ("fracture", "sensing", "quench")),
     )
     free = budget.SHARE * budget.free_memory() if memory is None else memory
     if too_much := cost.refusal(free, seconds):

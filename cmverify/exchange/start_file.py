@@ -134,6 +134,19 @@ KINDS: dict[str, tuple[str, str]] = {
         + 'probe_minus = "(x < -0.9) * (abs(y + 0.1) < 0.11)"\n'
         + 'control = "following"\nadvance = 0.1\n',
     ),
+    "quench": (
+        "Cracks run into a plate whose lower edge turns cold",
+        # Temperatures strain whole bonds only while others break.
+        _PLATE.replace('"extrapolated"', '"volume"')
+        + _SOLID
+        + '[[support]]\nwhere = "y > 0.4"\nu2 = 0.0\nrotation = 0.0\n\n'
+        + '[[support]]\nwhere = "(y > 0.4) * (x < -0.9)"\nu1 = 0.0\n\n'
+        + "[[crack]]\nstart = [-0.3, -0.6]\nend = [-0.3, -0.2]\n\n"
+        + "[[crack]]\nstart = [0.3, -0.6]\nend = [0.3, -0.15]\n\n"
+        + '[quench]\ncooled = "y < -0.49"\nchange = -50.0\ntimes = [200.0, 1000.0, 5000.0]\n'
+        + "conductivities = [50.0, 50.0]\nexpansions = [1.0e-5, 1.0e-5]\n"
+        + 'heat_capacity = 3.0e6\nG1 = 100.0\nno_fail = "y < -0.3"\n',
+    ),
     "piezoresistive": (
         "The resistance of a bar that is pulled",
         _PLATE

@@ -136,7 +136,7 @@ class Breakable:
         arm = 0.5 * family.length[:half] / family.spacing
         terms = [family.normal[:half], arm, axial, shear]
         #: |ξ| times the strains that temperatures cause by themselves at unit load, (2, half, N).
-        self.free: Array = _free_strains(discretisation)
+        self.free: Array = free_strains(discretisation)
         #: Whether bonds store energy of bending, or temperatures strain them.
         self.rich = isinstance(moduli, PolarModuli) or self.free.shape[2] > 0
         if self.rich:
@@ -242,6 +242,21 @@ class Breakable:
             bond_kernels.bond_work(grid, other, *rest)
         return float(out.sum())
 
+    def expansion_work(self, unknowns: Array, free: Array) -> float:
+        """−Σ L k (ε − e)·e′ Δv Δv: what an expansion e′ does against the bonds, J per thickness.
+
+        Parameters
+        ----------
+        unknowns : ndarray, shape (components, N)
+        free : ndarray, shape (2, half, N)
+            |ξ| times the strains e′, as in `free`.
+        """
+        grid, still = self._grid(0, unknowns), np.zeros_like(self._grids[1])
+        out = np.empty(len(self._segments))
+        rest = self._segments, self._steps, self._stored, self.strengths, out
+        bond_kernels.rich_work(grid, self.free, still, free, *rest)
+        return 2.0 * float(out.sum())
+
     def energy_of(self, unknowns: Array, bonds: Indices) -> Array:
         """Energy that single bonds hold, J per unit thickness; `bonds` are flat indices."""
         o, p, q = self.ends(bonds)
@@ -293,7 +308,7 @@ class Breakable:
         return np.concatenate(found)
 
 
-def _free_strains(body: Discretisation) -> Array:
+def free_strains(body: Discretisation) -> Array:
     """|ξ| times stretch and shear without stress of every bond, (2, half, N), or (2, half, 0)."""
     family, half = body.family, body.family.size // 2
     if body.eigenstrain is None:

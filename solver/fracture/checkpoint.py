@@ -46,6 +46,7 @@ def fingerprint(run: Growth) -> str:
         "programme": run.programme,
         "options": run.options,
         "history": run.history.names,
+        **run.marks,
     }
     if start.constraints is not None:
         basis = start.constraints.basis
@@ -129,6 +130,7 @@ def _restore(run: Growth, found: Mapping[str, Any]) -> None:
     run.load_factor, run.target = float(found["factor"]), int(found["target"])
     run.resting, run.reason = bool(found["resting"]), str(found["reason"])
     bonds.broken.add(*(found["breaks"][name] for name in found["breaks"].dtype.names))
+    run.arrive()
     run.solves += [(int(a), int(b), bool(c)) for a, b, c in found["steps"]]
     run.history.rows += found["history"].tolist()
     ledger.work, ledger.dissipated, ledger.excess, *rest = found["ledger"].tolist()

@@ -259,6 +259,11 @@ class Equilibrium:
 
     # ---- changes ------------------------------------------------------------------------
 
+    def warm(self, eigenstrain: Eigenstrain) -> None:
+        """Other temperatures strain the body than before."""
+        self.sound = replace(self.sound, eigenstrain=eigenstrain)
+        self._warm = self.rhs = self.border = None
+
     def follow(self, last: int | None = None) -> None:
         """Catch up with the record of broken bonds, up to its entry `last` (by default all)."""
         broken = self.breakable.broken

@@ -22,7 +22,7 @@ from ..state import State
 from . import crack_path
 from .breaking import TIE, Breakable, Criterion, Critical, next_batch
 from .crack_path import CrackPath
-from .damaged_body import Equilibrium
+from .damaged_body import Equilibrium, Step
 from .ledger import History, Ledger
 from .programme import Programme
 
@@ -64,11 +64,8 @@ class Growth(Result):
         max_iterations: int,
         monitors: Mapping[str, Callable[[Growth], float]],
     ) -> None:
-        if scene.surface == "extrapolated" and any(load.strain is not None for load in scene.loads):
-            raise SceneError(
-                "bonds that end at the surface cannot be broken under temperatures yet: use "
-                "surface='volume' or 'none'"
-            )
+        if any(load.strain is not None for load in scene.loads):
+            require_whole_bonds(scene)
         start = scene.discretise(sharp_tips=False, constrained=True)
         self.scene, self.programme, self.reason = scene, programme, ""
         #: Warnings about the scene; `warnings` adds what the run has come to.
@@ -247,7 +244,15 @@ class Growth(Result):
         """What the run leaves out or settles by a rule, one sentence each."""
         return self.solution.statistics.warnings
 
+    @property
+    def marks(self) -> dict[str, Any]:
+        """What decides results beyond scene, toughness and programme, for checkpoints."""
+        return {}
+
     # ---- what happens ---------------------------------------------------------------------
+
+    def arrive(self) -> None:
+        """What a saved `target` stands for besides a load factor: nothing here."""
 
     def begin(self) -> None:
         """First equilibrium, loaded to the first factor without breaking anything."""
@@ -371,20 +376,23 @@ class Growth(Result):
 
     def _solve(self, broken: int, tolerance: float | None = None) -> None:
         """Equilibrium after `broken` bonds broke, to a coarser `tolerance` if one is given."""
+        step = self._equilibrium(tolerance)
+        self.precise = tolerance is None or tolerance <= self.body.tolerance
+        self.solves.append((broken, step.iterations, step.refreshed))
+        self.ledger.solved(step, self.load_factor)
+
+    def _equilibrium(self, tolerance: float | None = None) -> Step:
+        """A new one; a part that moves freely is set aside."""
         try:
-            step = self.body.solve(tolerance)
+            return self.body.solve(tolerance)
         except (ConvergenceError, NegativeCurvatureError):
-            # A part that moves freely may be behind it.
             particles = self.body.fragments()
             if not len(particles):
                 particles = self.body.hinges()
             if not len(particles):
                 raise
             self._set_aside(particles)
-            step = self.body.solve(tolerance)
-        self.precise = tolerance is None or tolerance <= self.body.tolerance
-        self.solves.append((broken, step.iterations, step.refreshed))
-        self.ledger.solved(step, self.load_factor)
+            return self.body.solve(tolerance)
 
     def _remove(self, bonds: Indices, dropped: bool) -> None:
         step = len(self.solves)
@@ -417,6 +425,15 @@ class Growth(Result):
             tip_y=float(tip[1]),
             settled=float(self.resting),
             **{name: float(monitor(self)) for name, monitor in self._monitors.items()},
+        )
+
+
+def require_whole_bonds(scene: Scene) -> None:
+    """Refuse bonds that end at the surface: temperatures do not strain them while others break."""
+    if scene.surface == "extrapolated":
+        raise SceneError(
+            "bonds that end at the surface cannot be broken under temperatures yet: use "
+            "surface='volume' or 'none'"
         )
 
 

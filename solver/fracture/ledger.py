@@ -83,16 +83,18 @@ class Ledger:
         """The load factor changes while no bond breaks."""
         done = self._support_work() + self.deflection
         if self.bonds.free.shape[2]:
-            done += self._heat_work()
+            # Supports and loads do Σ L k (ε − e)·ε, expansion the rest of twice what is stored.
+            done += self.bonds.expansion_work(self.body.unknowns, self.bonds.free)
         self.work += 0.5 * (after**2 - before**2) * done
 
-    def _heat_work(self) -> float:
-        """−Σ L k (ε − e)·e Δv Δv: what expansion does against the bonds at unit load.
+    def warmed(self, expansion: float) -> None:
+        """Temperatures have changed while no bond broke and all loads stood still, at factor 1.
 
-        Supports and loads do Σ L k (ε − e)·ε, and both together twice what is stored.
+        `expansion` is what it did against the bonds.
         """
-        whole = 2.0 * self._stored()
-        return whole - 2.0 * self.bonds.stored(self.body.unknowns, self.body.unknowns)
+        deflection = self._load_work()
+        self.work += expansion + deflection - self.deflection
+        self.deflection = deflection
 
     def broken(self, bonds: Indices, load_factor: float) -> None:
         """Bonds are about to break under this load factor."""

@@ -27,8 +27,9 @@ from . import checkpoint as state_file
 from .breaking import Criterion, Critical
 from .growth import Growth
 from .programme import Programme
+from .temperatures import Temperatures, Tempered
 
-__all__ = ["Growth", "grow"]
+__all__ = ["Growth", "Temperatures", "grow"]
 
 
 def grow(
@@ -48,6 +49,7 @@ def grow(
     checkpoint: str | os.PathLike[str] | None = None,
     every: int = 50,
     listen: Callable[[Growth], None] | None = None,
+    temperatures: Temperatures | None = None,
 ) -> Growth:
     """Let cracks grow in an elastic scene.
 
@@ -95,6 +97,10 @@ def grow(
     listen : callable, optional
         Called with the `Growth` before every batch; it decides nothing.
 
+    temperatures : Temperatures, optional
+        Fields that the body goes through instead of a programme; the scene's supports and loads
+        act in full. The run ends with the last one.
+
     Returns
     -------
     Growth
@@ -126,20 +132,21 @@ def grow(
     >>> bool(abs(run.tip[1]) < 1e-9), bool(abs(run.history.imbalance).max() < 1e-8)
     (True, True)
     """
+    if temperatures is not None and programme is not None:
+        raise SceneError("cracks follow a programme of the load or temperatures, not both")
     programme = Programme() if programme is None else programme
-    if until is None and max_solves is None and programme.targets[-1] == np.inf:
+    if (
+        temperatures is None
+        and until is None
+        and max_solves is None
+        and programme.targets[-1] == np.inf
+    ):
         raise SceneError("the run has no end: give programme.stop, until or max_solves")
-    run = Growth(
-        scene,
-        toughness,
-        programme,
-        tuple(no_fail),
-        tension_only,
-        criterion,
-        batch,
-        tolerance,
-        max_iterations,
-        monitors or {},
+    rest = tuple(no_fail), tension_only, criterion, batch, tolerance, max_iterations, monitors or {}
+    run = (
+        Growth(scene, toughness, programme, *rest)
+        if temperatures is None
+        else Tempered(scene, toughness, temperatures, *rest)
     )
     mark = state_file.fingerprint(run)
     if checkpoint is None or not state_file.load(run, checkpoint, mark):

@@ -60,8 +60,8 @@ def test_examples_can_be_read(path):
 @pytest.mark.parametrize(
     "name",
     ["bracket", "cantilever",
-     "cooling", "fuse", "heated_strip", "polar", "pulse", "shaken", "strain_gauge",
-     "watched_crack",
+     "cooling", "fuse", "heated_strip", "polar", "pulse", "quenched_plate", "shaken",
+     "strain_gauge", "watched_crack",
      *(pytest.param(name, marks=pytest.mark.slow) for name in ("composite", "disc", "modes"))],
 )  # fmt: skip
 def test_examples_run(tmp_path, name):
