@@ -29,10 +29,18 @@ a/W = 0.45 to 0.73 (`taken_apart`):
 
 Without bonds across, and without a treatment, the drop of a crack that is drawn to its slit exceeds
 the slit's by 3–8 % at 0.5 mm, 2–4 % at 0.3 mm and 1.7–2.5 % at 0.15 mm, less with m = 3: the bare
-faces are the horizon's, at an order of 0.6. Along the fibres what both leave is no more than the
-half cell to which a path's length is known (2 % of the drop at 0.5 mm, 1.2 % at 0.3 mm). In other
-directions bonds along the fibres hold a crack together far behind its tip, and carry current: such
-a crack is longer than its drop tells.
+faces are the horizon's, at an order of 0.6. At a/W = 0.55 in other directions, whole across, bare
+faces, together:
+
+    fibres     0.5 mm                     0.3 mm
+    ζ = π/4    −6.1 %   +4.3 %   2.0 %    −5.7 %   +2.5 %   3.4 %
+    ζ = π/3    −8.8 %   +3.1 %   6.0 %    −7.2 %   +2.2 %   5.2 %
+    ζ = π/2    −9.2 %  +15.4 %   4.8 %   −11.5 %  +14.4 %   1.2 %
+
+So what is left may grow while both fall: of two opposed effects only the larger one is a bound.
+Along the fibres what both leave is no more than the half cell to which a path's length is known
+(2 % of the drop at 0.5 mm, 1.2 % at 0.3 mm). In other directions bonds along the fibres hold a
+crack together far behind its tip, and carry current: such a crack is longer than its drop tells.
 """
 
 from __future__ import annotations
@@ -398,8 +406,9 @@ CASES = (
                   f"much; measured against {FEM}, half as much again"),
             *(Check(m.name, "beside drawn", {3: bound},
                     source="a crack drawn along the same path on the same lattice; whole bonds "
-                    "across the grown one conduct (measured at 0.5 mm, half as much again)")
-              for m, bound in zip(_GROWN, (0.03, 0.031, 0.09, 0.072), strict=True)),
+                    "across the grown one conduct (measured at 0.5 mm, half as much again; at π/4, "
+                    "where two opposed effects nearly cancel by chance, the larger of them)")
+              for m, bound in zip(_GROWN, (0.03, 0.061, 0.09, 0.072), strict=True)),
             *(Check(m.name, "fallen", {3: 1e-6}, exact=True,
                     source="fewer bonds conduct less (Rayleigh's law of monotony)")
               for m in _GROWN),
