@@ -13,7 +13,8 @@ from __future__ import annotations
 from typing import Literal, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
+from scipy import ndimage
 
 from ..arrays import Array, Indices, Mask
 from ..errors import SceneError
@@ -159,9 +160,7 @@ class Breakable:
         self._steps = (dy * row + dx).astype(np.uint64)
         rows, columns = lattice.rows_columns
         self._cells = rows * row + columns
-        everybody = np.arange(lattice.count)
-        runs = segments.runs(lattice, everybody, np.zeros_like(everybody))
-        self._segments = np.column_stack(runs).astype(np.uint64)
+        self._segments = self._runs(np.arange(lattice.count))
         self._number = lattice.number()
         #: Factor of every bond as it was at the start, 0 where there is none, (half, N).
         self.whole: Array = np.stack([discretisation.bonds.strength(o) for o in range(half)])
@@ -170,6 +169,8 @@ class Breakable:
         self._strengths, self._followed = self.whole.copy(), 0
         #: Bonds that must not break, (half, N), or None.
         self.kept: Mask = self._kept(discretisation, no_fail)
+        # What utilisation counts of each bond: nothing of those that must not break.
+        self._weakness = np.where(self.kept, 0.0, self.whole / self.thickness)
         self._out = np.empty_like(self.whole)
         self._grids = np.zeros((2, 3, int(np.prod(lattice.shape))))
 
@@ -189,10 +190,15 @@ class Breakable:
     @property
     def strengths(self) -> Array:
         """Factor of every bond as the record of broken bonds leaves it, shape (half, N)."""
-        if self._followed != len(self.broken):
-            self._strengths.ravel()[self.broken.between(self._followed)] = 0.0
-            self._followed = len(self.broken)
+        self._follow()
         return self._strengths
+
+    def _follow(self) -> None:
+        """Catch up with the record of broken bonds."""
+        if self._followed != len(self.broken):
+            gone = self.broken.between(self._followed)
+            self._strengths.ravel()[gone] = self._weakness.ravel()[gone] = 0.0
+            self._followed = len(self.broken)
 
     # ---- energies -----------------------------------------------------------------------
 
@@ -215,14 +221,12 @@ class Breakable:
             Overwritten by the next call.
         """
         grid = self._grid(0, unknowns)
-        rest = self._load, self.strengths, self.tension_only, self._out
+        self._follow()
+        rest = self._load, self._weakness, self.tension_only, self._out
         if self.rich:
             bond_kernels.rich_energies(grid, self.free, self._segments, self._steps, *rest)
         else:
             bond_kernels.bond_energies(grid, self._segments, self._steps, *rest)
-        self._out[self.kept] = 0.0
-        if self.thickness.size > 1 or self.thickness.ravel()[0] != 1.0:
-            self._out /= self.thickness
         return self._out
 
     def stored(self, unknowns: Array, others: Array | None = None) -> float:
@@ -233,8 +237,9 @@ class Breakable:
         """
         grid = self._grid(0, unknowns)
         other = grid if others is None else self._grid(1, others)
-        out = np.empty(len(self._segments))
-        rest = self._segments, self._steps, self._stored, self.strengths, out
+        runs = self._segments if others is None else self._runs(self._straining(other))
+        out = np.empty(len(runs))
+        rest = runs, self._steps, self._stored, self.strengths, out
         if self.rich:
             more = self.free if others is None else self.free[:, :, :0]
             bond_kernels.rich_work(grid, self.free, other, more, *rest)
@@ -257,6 +262,25 @@ class Breakable:
         bond_kernels.rich_work(grid, self.free, still, free, *rest)
         return 2.0 * float(out.sum())
 
+    def _straining(self, grid: Array) -> Indices:
+        """Particles of origin of bonds that a field on the padded grid may strain."""
+        near = grid.any(axis=0).reshape(self.lattice.shape)
+        for axis in (0, 1):
+            near = ndimage.maximum_filter1d(near, 2 * self.family.reach + 1, axis=axis)
+        return np.nonzero(near.ravel()[self._cells])[0]
+
+    def _runs(self, particles: Indices) -> NDArray[np.uint64]:
+        """These particles as the kernels read them."""
+        cell, size, first = segments.runs(self.lattice, particles, np.zeros_like(particles))
+        return np.column_stack([cell, size, particles[first]]).astype(np.uint64)
+
+    def loads(self, bonds: Indices) -> Array:
+        """n1, n2, |ξ|/(2 Δx) of bonds and what squares of stretch and shear count, (5, n)."""
+        self._follow()
+        found = self._load[bonds // self.lattice.count, :5].T.copy()
+        found[3:] *= self._weakness.ravel()[bonds]
+        return found
+
     def energy_of(self, unknowns: Array, bonds: Indices) -> Array:
         """Energy that single bonds hold, J per unit thickness; `bonds` are flat indices."""
         o, p, q = self.ends(bonds)
@@ -272,8 +296,9 @@ class Breakable:
 
     def cost_of(self, bonds: Indices) -> Array:
         """Energy that breaking these bonds takes, w_c α Λ Δv_p Δv_q."""
-        thick = np.broadcast_to(self.thickness, self.whole.shape).ravel()[bonds]
-        return thick * (self.critical * self.pair)[bonds // self.lattice.count]
+        offsets, origins = np.divmod(bonds, self.lattice.count)
+        thick = np.broadcast_to(self.thickness, self.whole.shape)[offsets, origins]
+        return thick * (self.critical * self.pair)[offsets]
 
     # ---- geometry -----------------------------------------------------------------------
 

@@ -7,6 +7,7 @@ up to date (only what feels the broken bonds) when iterations tell that it does 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from time import perf_counter, process_time
@@ -21,7 +22,7 @@ from ..blas import one_thread
 from ..bonds import Bonds
 from ..bonds.parting import Pieces, part
 from ..errors import ConvergenceError, MechanismError
-from ..linear import Border, Bordered, BorderedInverse, Task, TwoLevel, method
+from ..linear import Border, Bordered, BorderedInverse, Task, TwoLevel, method, nearby
 from ..operators import BondOperator
 from ..operators.eigenstrain import Eigenstrain
 from ..problem import Discretisation, mechanisms
@@ -30,6 +31,7 @@ from ..problem.rigid import unheld
 from ..solution import Solution, Statistics
 from .broken import BrokenBonds
 from .crack_path import initial_tips
+from .decision import Decision
 
 # Iterations above those that a fresh preconditioner would have taken after which it is brought up
 # to date.
@@ -112,6 +114,8 @@ class Equilibrium:
         #: books it sets it back.
         self.released_by_parting = 0.0
         self.x: Array = np.zeros(self.operator.shape[0])
+        # The last answer and the field that it is.
+        self._known: tuple[Array, Array] | None = None
         self.preconditioner: LinearOperator | None = None
         #: Right-hand side, and what constraints add to the equations, kept while no bond of a
         #: prescribed particle breaks.
@@ -147,8 +151,15 @@ class Equilibrium:
 
     @property
     def unknowns(self) -> Array:
-        """Values of all unknowns at unit load, shape (components, N), NaN where set aside."""
-        return self.discretisation().field(self.x)
+        """Values of all unknowns at unit load, shape (components, N), NaN where set aside.
+
+        Not to be changed: the same array until the next solve.
+        """
+        known = self._known
+        # Each solve, and whoever sets particles aside, makes a new x.
+        if known is None or known[0] is not self.x:
+            known = self._known = self.x, self.discretisation().field(self.x)
+        return known[1]
 
     def discretisation(self, factor: float = 1.0) -> Discretisation:
         """The body as it is now, under `factor` times its scene's load."""
@@ -388,13 +399,15 @@ class Equilibrium:
 
     # ---- solving ------------------------------------------------------------------------
 
-    def solve(self, tolerance: float | None = None) -> Step:
+    def solve(self, tolerance: float | None = None, decision: Decision | None = None) -> Step:
         """Solve for the present bonds, from the last solution.
 
         Parameters
         ----------
         tolerance : float, optional
             A coarser one than that of the body.
+        decision : Decision, optional
+            When it is made nothing more is asked for.
 
         Raises
         ------
@@ -421,20 +434,24 @@ class Equilibrium:
             cpu = process_time()
             left = rhs - system.matvec(before)
             refreshed = self._prepare()
-            task = Task(rhs, before, tolerance, self.max_iterations)
+            guess, start = self._guess(before, left)
+            asked = self._asked(decision, guess)
+            task = Task(rhs, guess, tolerance, self.max_iterations, start, asked)
             inverse = self._inverse()
             after_x, iterations = method.iterate(operator, self.kind, inverse, task, self.border)
             right = rhs - system.matvec(after_x)
             self.solving += process_time() - cpu
             size, after = float(np.linalg.norm(rhs)), float(np.linalg.norm(right))
             residual = after / size if size else 0.0
-            decades = np.log10(max(float(np.linalg.norm(left)), 1e-300) / max(after, 1e-300))
+            decades = np.log10(max(float(np.linalg.norm(start)), 1e-300) / max(after, 1e-300))
             if refreshed:
                 self.pace = iterations / max(decades, 1.0)
             # It has served; the next solve gets a fresh one.
             self.worn = bool(iterations > self.pace * decades + _PATIENCE)
             self.iterations += iterations
             self.residual, self.seconds = residual, self.seconds + perf_counter() - begun
+            if decision is not None and decision.made:
+                tolerance = np.inf
             if not residual <= max(tolerance, method.attainable(operator, after_x, rhs)):
                 raise ConvergenceError(
                     f"equilibrium stopped at a relative residual of {residual:.2e} after "
@@ -443,6 +460,45 @@ class Equilibrium:
             released = 0.5 * float((after_x - before) @ (left + right))
             self.x, self.masters = np.split(after_x, [operator.shape[0]])
         return Step(iterations, refreshed, released * self.sound.family.cell_area)
+
+    def _asked(self, decision: Decision | None, guess: Array) -> Callable[[Array], bool] | None:
+        """The question to put to every iterate, put to the first guess."""
+        if decision is None or self.border is not None:
+            return None
+        active = self.operator.active
+        at = np.minimum(np.searchsorted(active, decision.particles), len(active) - 1)
+        free = active[at] == decision.particles
+        values = self.sound.values[:, decision.particles]
+
+        def enough(x: Array) -> bool:
+            values[:, free] = x.reshape(len(values), -1)[:, at[free]]
+            return decision(values)
+
+        enough(guess)
+        return enough
+
+    def _guess(self, before: Array, left: Array) -> tuple[Array, Array]:
+        """Where to begin and what residual that leaves, from the last answer and its residual.
+
+        Around the bonds that broke last particles have found their balance.
+        """
+        known, operator = self.preconditioner, self.operator
+        records = self.breakable.broken.records
+        if self.kind == "indefinite" or not isinstance(known, TwoLevel) or not len(records):
+            return before, left
+        last = records["bond"][records["step"] == records["step"][-1]]
+        near = nearby.around(operator, np.concatenate(self.breakable.ends(last)[1:]))
+        if not len(near):
+            return before, left
+        size = operator.shape[0]
+        change, loss = nearby.change(operator, known, near, left[:size])
+        guess, start = before.copy(), left.copy()
+        guess[:size] += change
+        start[:size] -= loss
+        if self.border is not None:
+            start[size:] -= self.border.coupling.T @ change
+        better = np.linalg.norm(start) < np.linalg.norm(left)
+        return (guess, start) if better else (before, left)
 
     def _inverse(self) -> LinearOperator:
         """The preconditioner, with the border if there is one."""

@@ -23,7 +23,8 @@ from . import crack_path
 from .breaking import TIE, Breakable, Criterion, Critical, next_batch
 from .crack_path import CrackPath
 from .damaged_body import Equilibrium, Step
-from .ledger import History, Ledger
+from .decision import Decision
+from .ledger import History, Ledger, same
 from .programme import Programme
 
 # Share of the bonds that a straight cut breaks per cell of its length: the default batch. Larger
@@ -83,6 +84,8 @@ class Growth(Result):
         self.precise = True
         self.solves: list[tuple[int, int, bool]] = []
         self._starts = crack_path.initial_tips(scene.cracks, scene.region)
+        # Utilisation, and of which answer with how many bonds gone.
+        self._judged: tuple[tuple[Array, Array, int], Array] | None = None
         self._paths: tuple[int, list[CrackPath]] = (-1, [])
 
     # ---- what has happened ----------------------------------------------------------------
@@ -153,10 +156,10 @@ class Growth(Result):
         of cracks that have begun by themselves (both of them, where one grew both ways), and of
         branches.
         """
-        known = len(self.bonds.broken)
+        records = self.bonds.broken.by_load
+        short = self.bonds.lengths(records["bond"]) <= crack_path.SHORT * self.scene.spacing
+        known = int(short.sum())
         if self._paths[0] != known:
-            records = self.bonds.broken.by_load
-            short = self.bonds.lengths(records["bond"]) <= crack_path.SHORT * self.scene.spacing
             records = records[short]
             traced = crack_path.trace(
                 self._starts,
@@ -269,7 +272,7 @@ class Growth(Result):
 
     def proceed(self) -> None:
         """On to the next equilibrium: a batch of bonds breaks, or the load changes."""
-        utilisation = self.bonds.utilisation(self.body.unknowns)
+        utilisation = self._utilisation()
         if self.programme.control == "following":
             self._follow(utilisation)
             return
@@ -278,7 +281,7 @@ class Growth(Result):
         batch, _ = next_batch(utilisation, least, self.batch)
         if len(batch):
             self.resting = False
-            self._break(batch)
+            self._break(batch, utilisation, least)
         elif not self.precise:
             self._solve(0)
         elif not self.resting:
@@ -288,6 +291,13 @@ class Growth(Result):
             self._ended()
         else:
             self._load(float(utilisation.max(initial=0.0)))
+
+    def _utilisation(self) -> Array:
+        """Of all bonds in the present equilibrium: asked for at its end and for the next batch."""
+        state = self.body.unknowns, self.bonds.free, len(self.bonds.broken)
+        if self._judged is None or not same(self._judged[0], state):
+            self._judged = state, self.bonds.utilisation(state[0])
+        return self._judged[1]
 
     def _ended(self) -> bool:
         """Whether nothing is left to do at a state of rest; says so in `reason`."""
@@ -351,7 +361,7 @@ class Growth(Result):
         if self._ended():
             return
         self.resting = False
-        self._break(batch)
+        self._break(batch, utilisation)
 
     def _event(self, largest: float) -> float:
         """Load factor of the next event; infinite if bonds bear nothing but the solver's noise."""
@@ -366,25 +376,43 @@ class Growth(Result):
         self.ledger.move(self.load_factor, factor)
         self.load_factor = factor
 
-    def _break(self, batch: Indices) -> None:
+    def _break(self, batch: Indices, utilisation: Array, least: float | None = None) -> None:
+        """Break bonds, and on to the next equilibrium.
+
+        If bonds break from a utilisation of `least` on, whatever they do to the others, it is
+        enough to tell overloaded bonds from others.
+        """
         self.ledger.broken(batch, self.load_factor)
         self._remove(batch, dropped=False)
         self._set_aside(self.body.slack())
-        # Within an avalanche it is enough to tell overloaded bonds from others.
-        rough = self.programme.control == "fixed"
-        self._solve(len(batch), max(_ROUGH, self.body.tolerance) if rough else None)
+        if least is None:
+            self._solve(len(batch))
+            return
+        tolerance = max(_ROUGH, self.body.tolerance)
+        decision = None
+        if not self.bonds.rich:
+            decision = Decision(self.bonds, utilisation, least, self.batch)
+        self._solve(len(batch), tolerance, decision)
+        if decision is not None and decision.made and not decision.saw(self._utilisation()):
+            self._solve(0, tolerance)
 
-    def _solve(self, broken: int, tolerance: float | None = None) -> None:
+    def _solve(
+        self, broken: int, tolerance: float | None = None, decision: Decision | None = None
+    ) -> None:
         """Equilibrium after `broken` bonds broke, to a coarser `tolerance` if one is given."""
-        step = self._equilibrium(tolerance)
+        step = self._equilibrium(tolerance, decision)
         self.precise = tolerance is None or tolerance <= self.body.tolerance
+        if decision is not None and decision.made:
+            self.precise = False
         self.solves.append((broken, step.iterations, step.refreshed))
         self.ledger.solved(step, self.load_factor)
 
-    def _equilibrium(self, tolerance: float | None = None) -> Step:
+    def _equilibrium(
+        self, tolerance: float | None = None, decision: Decision | None = None
+    ) -> Step:
         """A new one; a part that moves freely is set aside."""
         try:
-            return self.body.solve(tolerance)
+            return self.body.solve(tolerance, decision)
         except (ConvergenceError, NegativeCurvatureError):
             particles = self.body.fragments()
             if not len(particles):

@@ -17,6 +17,11 @@ _PARTED = 1e-10
 _RIGID, _TIMES = 1e-15, 3.0
 
 
+def same(one: tuple[Array, Array, int], other: tuple[Array, Array, int]) -> bool:
+    """Whether two states are one: the very arrays of unknowns and free strains, as many bonds."""
+    return one[0] is other[0] and one[1] is other[1] and one[2] == other[2]
+
+
 class Ledger:
     """Energies of a body whose bonds break, J per unit thickness.
 
@@ -34,6 +39,8 @@ class Ledger:
         self.body, self.bonds = body, bonds
         self.work = self.dissipated = self.excess = 0.0
         self.deflection = self.whole = 0.0
+        # The work of the supports, and of which answer with how many bonds gone.
+        self._supports: tuple[tuple[Array, Array, int], float] | None = None
 
     def opened(self) -> None:
         """The first equilibrium at unit load is known."""
@@ -71,9 +78,13 @@ class Ledger:
         From bond forces, not from the stored energy: the mutual energy of the present field and
         the field that is the prescribed values and zero elsewhere.
         """
-        prescribed = np.where(self.body.sound.prescribed, self.body.sound.values, 0.0)
-        bonds = self.bonds.stored(self.body.unknowns, prescribed)
-        return 2.0 * (bonds + self.body.surface_energy(prescribed))
+        state = self.body.unknowns, self.bonds.free, len(self.bonds.broken)
+        # Asked for before the load changes and when that is recorded.
+        if self._supports is None or not same(self._supports[0], state):
+            prescribed = np.where(self.body.sound.prescribed, self.body.sound.values, 0.0)
+            bonds = self.bonds.stored(state[0], prescribed)
+            self._supports = state, 2.0 * (bonds + self.body.surface_energy(prescribed))
+        return self._supports[1]
 
     def _stored(self) -> float:
         """Energy of all bonds at unit load."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,15 +29,22 @@ class Task:
         Of |rhs − K x| / |rhs|.
     limit : int
         Largest number of iterations, restarts included.
+    residual : ndarray, optional
+        rhs − K guess, where it is known.
+    enough : callable, optional
+        Asked about every iterate of `conjugate_gradients`; they end, whatever is left, when it
+        says yes.
     """
 
     rhs: Array
     guess: Array
     tolerance: float
     limit: int
+    residual: Array | None = None
+    enough: Callable[[Array], bool] | None = None
 
 
-class _Guarded(LinearOperator):
+class Guarded(LinearOperator):
     """The operator, watching for directions of non-positive energy."""
 
     def __init__(self, operator: LinearOperator) -> None:
@@ -55,14 +63,25 @@ class _Guarded(LinearOperator):
         return y
 
 
-class _Counter:
-    """Counts iterations as SciPy's callback."""
+class _Enough(Exception):
+    """Ends SciPy's iterations from within its callback."""
 
-    def __init__(self) -> None:
-        self.count = 0
 
-    def __call__(self, _: Array) -> None:
+class _Watch:
+    """SciPy's callback: counts iterations and asks whether they are enough."""
+
+    def __init__(self, enough: Callable[[Array], bool] | None) -> None:
+        self.count, self.enough = 0, enough
+        #: What iterates are added to, and their sum.
+        self.start: Array = np.zeros(0)
+        self.reached: Array = self.start
+
+    def __call__(self, step: Array) -> None:
         self.count += 1
+        if self.enough is not None:
+            self.reached = self.start + step
+            if self.enough(self.reached):
+                raise _Enough
 
 
 def conjugate_gradients(
@@ -75,19 +94,30 @@ def conjugate_gradients(
     NegativeCurvatureError
         If the operator turns out not to be positive.
     """
-    guarded, counter = _Guarded(operator), _Counter()
+    guarded, counter = Guarded(operator), _Watch(task.enough)
     x, size = task.guess.copy(), float(np.linalg.norm(task.rhs))
-    for _ in range(_RESTARTS):
+    for number in range(_RESTARTS):
         # Solve for the correction: its residual is small, so nothing is lost to cancellation.
-        defect = task.rhs - operator.matvec(x)
+        known = None if number else task.residual
+        defect = task.rhs - operator.matvec(x) if known is None else known
         share = float(np.linalg.norm(defect)) / size if size else 0.0
         left = task.limit - counter.count
         if share <= task.tolerance or left <= 0:
             break
         rtol = 0.5 * task.tolerance / share
-        step, _info = cg(
-            guarded, defect, rtol=rtol, atol=0.0, maxiter=left, M=preconditioner, callback=counter
-        )
+        counter.start = x
+        try:
+            step, _info = cg(
+                guarded,
+                defect,
+                rtol=rtol,
+                atol=0.0,
+                maxiter=left,
+                M=preconditioner,
+                callback=counter,
+            )
+        except _Enough:
+            return counter.reached, counter.count
         x = x + step
     return x, counter.count
 

@@ -14,9 +14,9 @@ import numpy as np
 from ..arrays import Array, Float
 from ..operators import BondOperator, kernels
 
-# Ratio of the ends of the interval on which the polynomial is small: shorter waves than the
-# coarse grid resolves.
-_RATIO = 5.0
+# Ratio of the ends of the interval on which the polynomial is small beside a coarse grid: shorter
+# waves than it resolves.
+RATIO = 5.0
 
 
 def size_of(values: Array) -> float:
@@ -40,6 +40,8 @@ class Smoother:
         Products a sweep, that of the first residual included.
     precision : type
         Of all numbers.
+    ratio : float
+        Of the ends of the interval on which the polynomial is small.
 
     Attributes
     ----------
@@ -55,6 +57,7 @@ class Smoother:
         largest: float,
         degree: int,
         precision: type[np.floating] = np.float32,
+        ratio: float = RATIO,
     ) -> None:
         self.operator, self._precision = operator, precision
         #: What the stiffness is taken over.
@@ -67,7 +70,7 @@ class Smoother:
             over(operator.half_blocks, self.unit),
             over(operator.bulk, self.unit),
             over(operator.diagonal, self.unit),
-            over(operator.bonds.strengths, 1.0),
+            over(operator.strengths, 1.0),
         )
         fixed = operator.identity_rows
         #: Places of prescribed components among the flattened unknowns.
@@ -78,7 +81,7 @@ class Smoother:
             own = own.copy()
             own[component, :, which] = own[:, component, which] = 0.0
         self._inverse = over(bulk, 1.0 / self.unit), over(own, 1.0 / self.unit)
-        self._weights = _chebyshev(largest, degree)
+        self._weights = _chebyshev(largest, degree, ratio)
         shape = operator.components, len(operator.active)
         self.residual, self.step, self.x, self._rows = np.zeros((4, *shape), dtype=precision)
         self._grid = np.zeros_like(operator.grid, dtype=precision)
@@ -137,9 +140,9 @@ class Smoother:
             rows[:, near] += operator.reaction(self.step[:, near]) / self.unit
 
 
-def _chebyshev(largest: float, degree: int) -> list[tuple[float, float]]:
+def _chebyshev(largest: float, degree: int, ratio: float) -> list[tuple[float, float]]:
     """Factors of the last step and of D⁻¹r in each step."""
-    low = largest / _RATIO
+    low = largest / ratio
     centre, radius = 0.5 * (largest + low), 0.5 * (largest - low)
     sigma = centre / radius
     rho = 1.0 / sigma

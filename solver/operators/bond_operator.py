@@ -87,6 +87,7 @@ class BondOperator(LinearOperator):
         dx, dy = bonds.family.offsets[:half].T
         #: What the kernels read, see `solver.operators.kernels`.
         self.steps = (dy * row + dx).astype(np.uint64)
+        self.strengths: Array = bonds.strengths
         coupling = self.blocks
         if isinstance(moduli, PolarModuli):
             coupling = each_offset_blocks(bonds.family, moduli, coupling=True)
@@ -264,7 +265,7 @@ class BondOperator(LinearOperator):
             self.half_blocks,
             self.bulk,
             self.diagonal,
-            self.bonds.strengths,
+            self.strengths,
             out,
         )
         return out
