@@ -36,7 +36,7 @@ def _scene(surface: str, cracks: list[Crack], shear: float) -> Scene:
         displacement=lambda x, y: np.sign(y)[:, None] * [shear, 1.0],
     )  # fmt: skip
     voigt = np.array([[1, 0.2, 0.1], [0.2, 0.8, 1 / 6], [0.1, 1 / 6, 1 / 3]])
-    material = ElasticTensor(voigt) if shear else ElasticTensor.isotropic(1.0, 0.2)
+    material = ElasticTensor(voigt) if shear else ElasticTensor.isotropic(1.0, 1 / 3)
     return Scene(rectangle(32, 40), 1.0, material, [grips], m=3, cracks=cracks, surface=surface)
 
 
@@ -45,7 +45,7 @@ def _scene(surface: str, cracks: list[Crack], shear: float) -> Scene:
     [
         ("volume", [Crack((-17, 0.3), (-8, 0.3))], 0.8),
         ("extrapolated", [Crack((-17, 0.3), (-8, 0.3))], 0.3),
-        # Mirror images break together.
+        # Mirror images break together; no rotations.
         ("none", [Crack((-17, 0), (-10, 0)), Crack((10, 0), (17, 0))], 0.0),
     ],
 )
