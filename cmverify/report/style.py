@@ -22,6 +22,7 @@ _KNOWN = {
     "bond/none": (GREY, "D", 5.0),
     "bond/lattice extrapolated": (YELLOW, "P", 7.0),
     "bond/lattice none": ("#303030", "X", 6.0),
+    "bond/lattice calibrated tip": ("#8C2D04", "*", 9.0),
     "fem/P1": (GREEN, "^", 6.0),
     "fem/P2": (PURPLE, "v", 6.0),
     "fem/P2 graded": (SKY, ">", 6.0),

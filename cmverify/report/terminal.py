@@ -110,13 +110,19 @@ def _print_checks(screen: Console, summary: Sequence[CaseResult]) -> None:
     show(screen, columns(*names, right=("measured",), prose=("method", "quantity")), rows, keys=2)
 
 
+#: Missing measurements that are told by name; a run that has just begun lacks hundreds.
+NAMED = 12
+
+
 def print_missing(screen: Console, summary: Sequence[CaseResult]) -> None:
     """What belongs to the run and has no usable record, if anything."""
     missing = [task for result in summary for task in result.missing]
     if missing:
         are = "measurement is" if len(missing) == 1 else "measurements are"
         line = Text(f"{len(missing)} {are} missing: ", style="bold red")
-        screen.print(line.append(", ".join(missing), style="default"), soft_wrap=True)
+        more = len(missing) - NAMED
+        named = ", ".join(missing[:NAMED]) + (f" and {more} more" if more > 0 else "")
+        screen.print(line.append(named, style="default"), soft_wrap=True)
 
 
 #: Longest line of the order tables.

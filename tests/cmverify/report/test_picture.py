@@ -1,5 +1,7 @@
 """Figures as bytes: reproducible, and as small as they can be without another colour."""
 
+import re
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -34,6 +36,24 @@ def test_symbols_are_plain_where_unicode_has_them():
     content = Picture.drawn("f", "svg", figure, "", "").content.decode()
     assert "σ₂₂" in content
     assert "tspan" in content
+
+
+def test_a_drawing_is_small_and_the_same_in_an_address():
+    import urllib.parse
+    import xml.etree.ElementTree as tree
+
+    picture = Picture.drawn("f", "svg", line(), "", "")
+    text = picture.content.decode()
+    assert "<!--" not in text
+    assert not re.findall(r'[" -]\d+\.\d{3,}', text)
+    assert '"' not in picture.uri
+    assert "&" not in picture.uri
+    there = tree.fromstring(urllib.parse.unquote(picture.uri.split(",", 1)[1]))
+    here = tree.fromstring(text)
+    assert [n.tag for n in there.iter()] == [n.tag for n in here.iter()]
+    for one, other in zip(there.iter(), here.iter(), strict=True):
+        own = {k: v.replace("'", '"').split() for k, v in other.items()}
+        assert {k: v.split() for k, v in one.items()} == own
 
 
 def test_few_colours_are_kept_exactly():
