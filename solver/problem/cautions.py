@@ -124,7 +124,9 @@ def missing_bonds(bonds: Bonds, held: Mask, damaged: bool) -> tuple[str, ...]:
         return ()
     weight = bonds.family.weight
     missing = np.zeros(bonds.lattice.count)
-    missing[bonds.short] = weight @ ~bonds.exist(bonds.short)
+    # Of held ones nothing counts, and where a layer is held those are nearly all.
+    short = bonds.short[~held[bonds.short]]
+    missing[short] = weight @ ~bonds.exist(short)
     if not damaged:
         cut = bonds.exist(bonds.special) & (bonds.strengths == 0.0)
         missing[bonds.special] += weight @ cut
