@@ -236,16 +236,15 @@ def many(n: int) -> Measurement:
 
     def listen(run: Any) -> None:
         if run.resting and run.time in moments:
-            kept[run.time] = run.damage
+            kept[run.time] = run.ledger.dissipated, run.damage
 
     run, places, depths = array(n, listen=listen)
-    kept[run.time] = run.damage
+    kept[run.time] = run.ledger.dissipated, run.damage
     seconds = perf_counter() - begun
     depth = reached(run, places, depths)
     order = np.sort(depth)[::-1]
     h = run.history
     deep = int((depth > DEEP).sum())
-    ends = np.array([-0.5 * LENGTH, 0.5 * LENGTH])
     return Measurement(
         run.body.operator.shape[0],
         {
@@ -258,6 +257,11 @@ def many(n: int) -> Measurement:
          "deepest, mm": ", ".join(f"{1e3 * d:.2f}" for d in order[:8])},
         lines=(
             LinePlot(
+                "Energy that cracks have taken", "time (s)", "energy (J/m)",
+                (Curve(f"{n} cells", h["time"], h.dissipated, np.zeros(0), np.zeros(0)),),
+                joined=True,
+            ),
+            LinePlot(
                 "Cracks deeper than a depth", "depth over W", "number",
                 (Curve(f"{n} cells", order / WIDTH, np.arange(1.0, 1.0 + len(order)), np.zeros(0),
                        np.zeros(0)),),
@@ -266,7 +270,8 @@ def many(n: int) -> Measurement:
         ),
         stages=Stages(
             "damage", run.points, run.scene.spacing,
-            tuple(Stage(f"{time:.3f} s", ends, kept[time]) for time in sorted(kept)),
+            tuple(Stage(f"{time:.3f} s", np.array([time, spent]), damage)
+                  for time, (spent, damage) in sorted(kept.items())),
         ),
     )  # fmt: skip
 
