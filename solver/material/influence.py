@@ -11,7 +11,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import quad
 
 from ..arrays import Array
 
@@ -38,6 +37,9 @@ class Influence:
 
     def moment(self, power: int) -> float:
         """∫₀¹ ρ^power Λ(ρ) dρ."""
+        # A tenth of what importing the solver takes, for calibrations that most scenes do not use.
+        from scipy.integrate import quad
+
         return float(quad(lambda r: r**power * float(self(np.array(r))), 0.0, 1.0)[0])
 
 
