@@ -122,38 +122,34 @@ class Hats:
         number = np.full(lattice.shape, -1, dtype=np.int64)
         rows, columns = (axis[operator.active] for axis in lattice.rows_columns)
         number[rows, columns] = np.arange(len(rows))
-        links = []
+        count, links = len(rows), []
         for o in np.argsort(bonds.family.length, kind="stable")[:8]:
             dx, dy = bonds.family.offsets[o]
             neighbour = number[rows + dy, columns + dx]
             links.append(np.where(bonds.strength(int(o))[operator.active] != 0, neighbour, -1))
-        slots = np.argsort(node.ravel(), kind="stable")
-        sorted_nodes = node.ravel()[slots]
-        first = np.searchsorted(sorted_nodes, suspects)
-        last = np.searchsorted(sorted_nodes, suspects, side="right")
-        flat_piece, flat_weight = piece.ravel(), weight.ravel()
-        for a, b in zip(first, last, strict=True):
-            mine = slots[a:b]
-            mine = mine[flat_weight[mine] > 0]
-            particles = mine // 4
-            order = np.argsort(particles)
-            members = particles[order]
-            starts, ends = [], []
-            for link in links:
-                neighbour = link[members]
-                where = np.minimum(np.searchsorted(members, neighbour), len(members) - 1)
-                linked = members[where] == neighbour
-                starts.append(np.nonzero(linked)[0])
-                ends.append(where[linked])
-            i, j = np.concatenate(starts), np.concatenate(ends)
-            size = len(members)
-            graph = sparse.coo_array((np.ones(len(i), np.int8), (i, j)), shape=(size, size))
-            _, labels = connected_components(graph, directed=False)
-            # The heaviest piece first: pieces beyond the fourth get no hat of their own.
-            weights = np.bincount(labels, flat_weight[mine[order]])
-            rank = np.empty(len(weights), dtype=np.int64)
-            rank[np.argsort(-weights, kind="stable")] = np.arange(len(weights))
-            flat_piece[mine[order]] = rank[labels]
+        # Pairs of a suspect and a particle of its support, by suspect and then by particle.
+        chosen = np.nonzero(np.isin(node.ravel(), suspects) & (weight.ravel() > 0))[0]
+        key = node.ravel()[chosen] * count + chosen // 4
+        chosen, key = chosen[np.argsort(key)], np.sort(key)
+        hat, member = np.divmod(key, count)
+        starts, ends = [], []
+        for link in links:
+            neighbour = link[member]
+            wanted = hat * count + neighbour
+            where = np.minimum(np.searchsorted(key, wanted), len(key) - 1)
+            linked = (neighbour >= 0) & (key[where] == wanted)
+            starts.append(np.nonzero(linked)[0])
+            ends.append(where[linked])
+        i, j = np.concatenate(starts), np.concatenate(ends)
+        graph = sparse.coo_array((np.ones(len(i), np.int8), (i, j)), shape=(len(key),) * 2)
+        _, labels = connected_components(graph, directed=False)
+        # The heaviest piece of a hat first: pieces beyond the fourth get no hat of their own.
+        _, first = np.unique(labels, return_index=True)
+        heavy = np.lexsort((first, -np.bincount(labels, weight.ravel()[chosen]), hat[first]))
+        begin = np.searchsorted(hat[first][heavy], hat[first][heavy])
+        rank = np.empty(len(heavy), dtype=np.int64)
+        rank[heavy] = np.arange(len(heavy)) - begin
+        piece.ravel()[chosen] = rank[labels]
         return piece
 
     def galerkin(

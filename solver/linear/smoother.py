@@ -64,7 +64,8 @@ class Smoother:
         self.unit = size_of(operator.bulk)
 
         def over(values: Array, unit: float) -> Float:
-            return np.ascontiguousarray(values / unit, dtype=precision)
+            found = np.empty(values.shape, dtype=precision)
+            return np.divide(values, unit, out=found, casting="same_kind")
 
         self._stiffness = (
             over(operator.half_blocks, self.unit),
