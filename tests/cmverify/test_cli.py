@@ -237,7 +237,9 @@ def test_a_record_that_is_gone_or_damaged_is_no_success(toys, finished, tmp_path
     numbers = json.loads((tmp_path / "results.json").read_text())
     assert numbers["passed"] is False
     assert "--resume" in json.dumps(numbers)
-    assert "1 measurement is missing" in (tmp_path / "index.html").read_text(encoding="utf-8")
+    page = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert "1 measurement is missing" in page
+    assert "What fails" not in page  # nothing does: what is missing is told of by name
     # Measured again, and the other one not.
     current, threads = results.source_fingerprint(), threads_per_worker(1)
     kept = [
