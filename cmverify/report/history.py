@@ -38,6 +38,8 @@ class Series:
         Short hashes, by the dates of their commits.
     values : tuple of float
         NaN where the benchmark failed.
+    once : bool
+        Whether no figure was repeated, as with `asv run --quick`: asv knows no interval of them.
     """
 
     machine: str
@@ -46,6 +48,7 @@ class Series:
     unit: str
     commits: tuple[str, ...]
     values: tuple[float, ...]
+    once: bool = False
 
     @property
     def known(self) -> list[tuple[str, float]]:
@@ -73,6 +76,7 @@ def read(folder: Path) -> list[Series]:
         about = _load(folder / "benchmarks.json")
         units = {n: b.get("unit", "") for n, b in about.items() if isinstance(b, dict)}
     found: dict[tuple[str, str, str], dict[tuple[float, str], float]] = {}
+    repeated: set[tuple[str, str]] = set()
     for path in sorted(folder.glob("*/*.json")):
         if path.name == "machine.json":
             continue
@@ -84,6 +88,10 @@ def read(folder: Path) -> list[Series]:
         where = " · ".join(filter(None, (path.parent.name, str(data.get("env_name", "")))))
         for name, entry in data["results"].items():
             row = dict(zip(data["result_columns"], entry, strict=False))
+            if units.get(name) != "seconds" or any(
+                n and n > 1 for n in row.get("stats_repeat") or ()
+            ):
+                repeated.add((where, name))
             for parameters, value in _values(row):
                 found.setdefault((where, name, parameters), {})[when] = value
     if not found:
@@ -92,6 +100,7 @@ def read(folder: Path) -> list[Series]:
         Series(
             machine, name, parameters, units.get(name, ""),
             tuple(commit for _, commit in sorted(at)), tuple(at[when] for when in sorted(at)),
+            (machine, name) not in repeated,
         )
         for (machine, name, parameters), at in sorted(found.items())
     ]  # fmt: skip
@@ -174,6 +183,10 @@ def _figure(name: str, drawn: Sequence[Series]) -> Figure:
         step = max(1, -(-len(order) // 6))
         axis.set_xticks(range(0, len(order), step), order[::step], fontsize=8)
         axis.axhline(1.0, color=style.GREY, linewidth=0.8)
+        ratios = [v / s.known[0][1] for s in drawn for _, v in s.known if s.known[0][1]]
+        if min(ratios, default=0.0) > 0.0 and max(ratios) > 4.0 * min(ratios):
+            axis.set_yscale("log")
+            figures._decades(axis.yaxis)
         axis.set(title=name, xlabel="commit", ylabel="over the first")
         figures._legend_below(axis)
         return figure

@@ -43,7 +43,7 @@ def test_series_follow_the_dates_of_their_commits(results):
     quick = found["b.time_case", "quick <1>"]
     assert quick.commits == ("a" * 8, "b" * 8)
     assert quick.values == (2.0, 1.0)
-    assert (quick.unit, quick.ratio) == ("seconds", 0.5)
+    assert (quick.unit, quick.ratio, quick.once) == ("seconds", 0.5, True)
     slow = found["b.time_case", "slow"]
     assert math.isnan(slow.values[0])
     assert slow.known == [("b" * 8, 3.0)]
@@ -58,6 +58,7 @@ def test_the_command_writes_a_page_that_stands_alone(results, tmp_path):
     assert browser.dead_links(page) == []
     assert "quick &lt;1&gt;" in text
     assert "2 commits on 1 machine" in text
+    assert text.count("Measured once at each commit") == 1  # an error is the same however often
     assert text.count("<img") == 2
     if browser.find():
         seen = browser.look(page, 1400)
