@@ -7,6 +7,8 @@ import sys
 from importlib.metadata import version as installed
 from pathlib import Path
 
+from docutils import nodes
+
 sys.path.insert(0, str(Path(__file__).parent))
 # The gallery's scenes are small: threads would cost more than they bring.
 os.environ.setdefault("NUMBA_NUM_THREADS", "1")
@@ -49,7 +51,13 @@ sphinx_gallery_conf = {
 
 html_theme = "pydata_sphinx_theme"
 html_title = "cmverify"
-html_static_path: list[str] = []
+html_static_path = ["static"]
+html_css_files = ["tables.css"]
+#: Pages without a section of their own leave its place to their tables.
+html_sidebars = {
+    page: []
+    for page in ("results", "errata", "architecture", "commands", "contributing", "changelog")
+}
 html_theme_options = {"show_toc_level": 2, "navigation_with_keys": True}
 html_copy_source = False
 html_show_sourcelink = False
@@ -64,6 +72,14 @@ def _absolute_values(app, what, name, obj, options, lines):
             lines[number] = "`".join(parts)
 
 
+def _figures_stay_whole(app, doctree, name):
+    """A cell of one figure, such as 1.1e-4, has a class: browsers would break it at its sign."""
+    for cell in doctree.findall(nodes.entry):
+        if " " not in cell.astext().strip() and any(c.isdigit() for c in cell.astext()):
+            cell["classes"].append("figure-cell")
+
+
 def setup(app):
+    app.connect("doctree-resolved", _figures_stay_whole)
     # After numpydoc has made sections of the docstring.
     app.connect("autodoc-process-docstring", _absolute_values, priority=900)

@@ -117,7 +117,7 @@ def _figure(points: list[Point], quantity: str) -> Figure:
             )  # fmt: skip
         axis.set(xscale="log", yscale="log", title="Error against time (lower left is better)")
         axis.set_xlabel("set-up and solve (s, median)")
-        axis.set_ylabel(quantity[:60])
+        axis.set_ylabel(quantity.split(",")[0])
         figures._decades(axis.xaxis, "s")
         figures._decades(axis.yaxis)
         figures._legend_below(axis)
