@@ -18,11 +18,12 @@ from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..analyses.statics import solve
 from ..arrays import Array, Indices, Mask
 from ..errors import MechanismError, SceneError
-from ..geometry import Lattice, Where, select
+from ..geometry import Crack, Lattice, Where, select
 from ..problem import Description, Discretisation
 from ..solution import Solution
 from .broken import BrokenBonds
@@ -122,6 +123,25 @@ class Sensor:
         # Fragments without a lead carry no current: they are set aside.
         live = replace(self.scene, broken=lambda lattice, family: broken, loose="drop")
         return solve(Discretisation.of(live, constrained=True), self.tolerance)
+
+    def along(self, *ways: ArrayLike) -> float:
+        """Potential difference with cracks drawn along some ways, V, and no bond broken.
+
+        What a crack would read that is cut right through where one grew (`Growth.path`, or the
+        points of every one of `Growth.paths`): no whole bond across it conducts, and its faces are
+        treated as those of any drawn crack. Each reading starts from nothing, at some ten times the
+        cost of following what has broken.
+
+        Parameters
+        ----------
+        ways : array_like, shape (n, 2), m
+            Those of fewer than two points are no cracks.
+        """
+        drawn = [np.asarray(way, dtype=np.float64) for way in ways]
+        more = [Crack(*((float(x), float(y)) for x, y in way)) for way in drawn if len(way) > 1]
+        scene = replace(self.scene, cracks=[*self.scene.cracks, *more])
+        start = Discretisation.of(scene, sharp_tips=False, constrained=True)
+        return self.read(solve(start, self.tolerance))
 
     def read(self, solution: Solution) -> float:
         """Potential difference plus − minus of a solution, V.

@@ -43,6 +43,7 @@ def test_a_run_is_read_and_drawn(monkeypatch):
     outcome = sensing.grown(Conductor(), 1)
     assert outcome.quantities["fallen"] < 1e-6
     assert 0 < outcome.quantities["cost"] < 1
+    assert 0 < outcome.quantities["along path"] < 0.1
     drop = outcome.lines[0].curves[0].computed
     assert drop[0] == pytest.approx(1.0)
     assert drop[-1] > 1.05
@@ -71,7 +72,7 @@ def test_a_crack_cut_bond_by_bond_is_taken_apart(monkeypatch, surface):
         broken[gone[left:]] = True
         run = SimpleNamespace(broken=broken.reshape(before.shape), path=path)
         monkeypatch.setattr(sensing, "bridging", lambda run, left=left: gone[:left])
-        found = sensing.taken_apart(conductor, 1, sensor, run)
+        found = sensing.taken_apart(sensor, run)
         assert (found["whole across"] < -1e-4) == (left > 0)
         assert found["whole across"] <= 1e-8
         if surface == "none":

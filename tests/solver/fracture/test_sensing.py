@@ -18,6 +18,7 @@ from solver import (
     Toughness,
     rectangle,
 )
+from solver.analyses.statics import solve
 from solver.fracture import grow
 from solver.fracture.sensing import Sensor
 from tests.solver.fracture import strip
@@ -86,6 +87,21 @@ def test_what_is_kept_between_readings_gives_what_a_fresh_solve_gives(surface):
     # Another run starts anew.
     assert run(sensor, mechanical).history.drop[0] == pytest.approx(drop[0], rel=1e-8)
     assert sensor.read(sensor.solution(growth)) == pytest.approx(drop[~parted][-1], rel=1e-12)
+
+
+def test_a_way_that_a_crack_went_is_read_as_a_drawn_crack():
+    sensor = Sensor(conductor(), top, bottom)
+    scene = conductor()
+    (known,) = scene.cracks
+    tip = np.array(known.points[-1])
+    way = tip + np.array([[0.0, 0.0], [0.1, 0.0], [0.2, 0.05]])
+    longer = replace(scene, cracks=[known, Crack(*(tuple(map(float, p)) for p in way))])
+    wanted = sensor.read(solve(longer.discretise(sharp_tips=False), 1e-9))
+    assert sensor.along(way) == pytest.approx(wanted, rel=1e-9)
+    # What has not grown is no crack.
+    whole = sensor.read(solve(scene.discretise(sharp_tips=False), 1e-9))
+    assert sensor.along(way[:1], np.zeros((0, 2))) == pytest.approx(whole, rel=1e-8)
+    assert sensor.along(way) > 1.02 * whole
 
 
 def test_nothing_is_solved_where_nothing_has_broken():
