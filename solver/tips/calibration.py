@@ -92,13 +92,15 @@ def calibrated_tip(
     there = sign * np.asarray(place)
     # A tip on a border lies in the cell below it, and to its left, whichever way it points.
     shift = np.where(there < _SAME - 0.5, 1, 0)
-    tip = _calibrated(
+    found = _calibrated(
         (family.m, family.area_rule, family.influence),
         tuple((moduli.normal / largest).round(12)),
         tuple((moduli.shear / largest).round(12)),
         (*(there + shift).round(digits), *(sign * np.asarray(direction)).round(digits + 2)),
     )
-    tip = replace(tip, cells=tip.cells - shift)
+    if isinstance(found, str):
+        raise TipCalibrationError(found)
+    tip = replace(found, cells=found.cells - shift)
     if over:
         tip = tip.inverted()
     return tip, tip.matrix * (largest * spacing)
@@ -110,8 +112,8 @@ def _calibrated(
     normal: tuple[float, ...],
     shear: tuple[float, ...],
     where: tuple[float, ...],
-) -> CalibratedTip:
-    """For a spacing and a largest modulus of one."""
+) -> CalibratedTip | str:
+    """For a spacing and a largest modulus of one; or why there is none, which takes as long."""
     m, area_rule, influence = of_family
     family = Family(m, 1.0, area_rule, influence)
     moduli = ElasticModuli(np.array(normal), np.array(shear))
@@ -121,7 +123,10 @@ def _calibrated(
         along = np.linalg.solve(
             effective_tensor(family, moduli), moduli.uniaxial(direction[None])[0]
         )
-        return _of(Patch.of(family, moduli, place, direction), place, along)
+        try:
+            return _of(Patch.of(family, moduli, place, direction), place, along)
+        except TipCalibrationError as error:
+            return str(error)
 
 
 def _of(patch: Patch, place: Array, along: Array) -> CalibratedTip:

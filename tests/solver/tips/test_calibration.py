@@ -5,7 +5,7 @@ import pytest
 
 from solver.material import Family, calibrate
 from solver.material.tensors import ElasticTensor
-from solver.tips import calibrated_tip
+from solver.tips import TipCalibrationError, calibrated_tip, calibration
 from solver.tips.calibration import _calibrated, homogeneous
 
 PAPER = np.array([[1.0, 1 / 5, 1 / 10], [1 / 5, 4 / 5, 1 / 6], [1 / 10, 1 / 6, 1 / 3]])
@@ -67,3 +67,17 @@ def test_without_rotations(poisson):
     moduli = calibrate(family, ElasticTensor.isotropic(1.0, poisson), "lattice")
     tip, _ = calibrated_tip(family, moduli, PLACE, DIRECTION)
     assert tip.matrix.shape == (2 * len(tip.cells),) * 2
+
+
+def test_that_there_is_none_is_found_once(monkeypatch):
+    monkeypatch.setattr(calibration, "_MOST", 1.0001)
+    _calibrated.cache_clear()
+    said = []
+    for spacing in (1.0, 0.1):
+        with pytest.raises(TipCalibrationError) as told:
+            of(spacing=spacing)
+        said.append(str(told.value))
+    assert _calibrated.cache_info().misses == 1
+    assert said[0] == said[1]
+    assert "would have to change" in said[0]
+    _calibrated.cache_clear()
