@@ -23,6 +23,8 @@ KEPT = (
 )  # fmt: skip
 
 Function = Callable[..., Any]
+#: Tables and keys under which something is known, by its identity.
+Places = dict[int, list[tuple[dict[Any, Any], Any]]]
 
 
 @dataclass(frozen=True)
@@ -80,9 +82,10 @@ def applied(faults: dict[str, Callable[[Function], Function] | None]) -> Iterato
     import_all()
     calls = Calls()
     forget()
+    known = _places()
     with ExitStack() as stack:
         for target, change in faults.items():
-            stack.enter_context(_replaced(target, change, calls))
+            stack.enter_context(_replaced(target, change, calls, known))
         try:
             yield calls
         finally:
@@ -123,7 +126,7 @@ def find(target: str) -> tuple[Any, str]:
 
 @contextmanager
 def _replaced(
-    target: str, change: Callable[[Function], Function] | None, calls: Calls
+    target: str, change: Callable[[Function], Function] | None, calls: Calls, known: Places
 ) -> Iterator[None]:
     owner, name = find(target)
     right = vars(owner)[name]
@@ -157,20 +160,7 @@ def _replaced(
         finally:
             setattr(owner, name, right)
         return
-    places = [
-        (vars(module), key)
-        for module in _modules()
-        for key, value in list(vars(module).items())
-        if value is right
-    ]
-    places += [
-        (table, key)
-        for module in _modules()
-        for table in list(vars(module).values())
-        if type(table) is dict
-        for key, value in list(table.items())
-        if value is right
-    ]
+    places = known.get(id(right), [])
     for table, key in places:
         table[key] = wrong
     try:
@@ -178,6 +168,20 @@ def _replaced(
     finally:
         for table, key in places:
             table[key] = right
+
+
+def _places() -> Places:
+    """Where every function is known by a name, in modules and in their tables, by its identity."""
+    found: Places = {}
+    for module in _modules():
+        names = vars(module)
+        # Every module holds Python's own functions too.
+        held = [v for k, v in names.items() if type(v) is dict and k != "__builtins__"]
+        for table in (names, *held):
+            for key, value in list(table.items()):
+                if callable(value):
+                    found.setdefault(id(value), []).append((table, key))
+    return found
 
 
 def _modules() -> list[ModuleType]:
