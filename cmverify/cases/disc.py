@@ -111,6 +111,7 @@ def bond(
             "temperature": relative_l2(solution.temperature[free], temperature[free]),
             "flux": relative_l2(flux[free], exact_flux[free]),
             "flux by Eq. 170": relative_l2(hotter[free], exact_flux[free]),
+            "iterations": float(solution.statistics.iterations),
         },
         seconds=seconds,
         statistics=adapters.solver_statistics(solution.statistics),
@@ -223,6 +224,7 @@ QUANTITIES = {
     "temperature": "relative L2 error of the temperature",
     "flux": "relative L2 error of the heat flux, consistent half sum",
     "flux by Eq. 170": "relative L2 error of the heat flux by Eq. 170 (hotter neighbours only)",
+    "iterations": "Krylov iterations to the residual asked for",
 }
 # Orders 2 and 3 in L2 by theory. Two gmsh meshes of one disc differ in regularity: e/h^3 of P2
 # was measured between 0.15 and 0.27 for seven sizes from 0.02 to 0.08, 0.85 in log2.
@@ -253,6 +255,13 @@ def _exact_checks() -> tuple[Check, ...]:
     )
 
 
+# A square coarse grid takes 26, one along the worse conductor 51, none 55.
+STEPS = Check(
+    "bond/positive",
+    "iterations",
+    {50: 25.0},
+    source="two levels: 20 or 21 were measured at every spacing, with a fifth more",
+)
 #: Long bonds weigh less: Λ = 1 − |ξ|/δ.
 CONICAL = "bond/positive, conical influence"
 
@@ -272,6 +281,7 @@ CASES = (
         methods=methods(CUBIC),
         checks=(
             *_exact_checks(),
+            STEPS,
             # 1e-3 at a/100; a difference quotient of a cubic has order 2, hence the coarser bounds.
             *(
                 Check(
@@ -345,6 +355,7 @@ CASES = (
                 order=OrderBand(1.5, 3.0),
                 source=SECOND_ORDER,
             ),
+            STEPS,
             *FEM_CHECKS,
         ),
         quantities=QUANTITIES,

@@ -1,4 +1,7 @@
-"""Faults of the judges themselves: norms, orders, extrapolation, and what cases measure with."""
+"""Faults of the judges themselves: norms, orders, extrapolation, what cases measure with.
+
+What carries answers of other programs to the points at which they are judged is a judge too.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from cmverify.faults.changes import result, scaled
+from cmverify.faults.changes import argument, result, scaled
 from cmverify.faults.fault import Fault
 
-J, C = "cmverify.judge", "cmverify.cases.common"
+J, C, X = "cmverify.judge", "cmverify.cases.common", "cmverify.exchange"
 Function = Callable[..., Any]
 
 
@@ -50,6 +53,26 @@ FAULTS = (
         "intensities by series + 1 %", f"{C}.sif.fit_series", lambda right: _series(right), "judges"
     ),
     Fault("slopes between particles + 1 %", f"{C}.sif.local_gradient", scaled(1.01), "judges"),
+    # ---- answers of other programs ------------------------------------------------------
+    Fault("distances between lines + 1 %", f"{J}.norms.line_distance", scaled(1.01), "answers"),
+    Fault("largest deviations + 1 %", f"{J}.norms.largest_deviation", scaled(1.01), "answers"),
+    Fault(
+        "rigid motions counted as errors",
+        f"{J}.norms.without_rigid_motion",
+        lambda right: lambda points, displacement: displacement,
+        "answers",
+    ),
+    Fault(
+        "answers taken from the nearest particle",
+        f"{X}.carry._by_fit",
+        lambda right: lambda answer, tree, wanted, values, cracks: values[tree.query(wanted)[1]],
+        "answers",
+    ),
+    Fault(
+        "answers carried across cracks", f"{X}.carry._by_fit", argument(4, lambda _: ()), "answers"
+    ),
+    Fault("answers on triangles + 1 %", f"{X}.carry._on_triangles", scaled(1.01), "answers"),
+    Fault("answers in time + 1 %", f"{X}.carry._in_time", scaled(1.01), "answers"),
 )
 
 

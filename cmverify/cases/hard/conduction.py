@@ -47,7 +47,8 @@ class Conductor:
 def _solve(conductor: Conductor, n: int, m: int, temperature: Any) -> Any:
     from solver import ConductivityTensor, Scene, Support, rectangle
 
-    given = materials.conductivity(conductor.ratio, conductor.angle)
+    # Made by the solver of its principal values; the exact fields are those of the case's own.
+    given = ConductivityTensor.orthotropic(conductor.ratio, 1.0, conductor.angle).matrix.copy()
     given[0, 0] *= conductor.distortion
     return Scene(
         region=rectangle(1.0, 1.0),

@@ -114,11 +114,17 @@ def scene_of(plate: Plate, n: int, stiffer: float = 1.0) -> Any:
     from solver import Crack, ElasticTensor, Scene, disc, rectangle
 
     region = rectangle(1.0, 1.0)
+    # By the solver's own conventions; the reference has those of the case.
+    if plate.solid in SOLIDS:
+        solid = ElasticTensor.orthotropic(*SOLIDS[plate.solid])
+        solid = solid.rotated(float(np.radians(plate.degrees)))
+    else:
+        solid = ElasticTensor.isotropic(1.0, float(plate.solid))
     return Scene(
         region=region - disc(HOLE) if plate.feature == "hole" else region,
         spacing=1.0 / n,
         m=3,
-        material=ElasticTensor(stiffer * plate.voigt),
+        material=ElasticTensor(stiffer * solid.voigt),
         surface=plate.surface,
         cracks=[Crack(*CRACK)] if plate.feature == "crack" else [],
         density=1.0,

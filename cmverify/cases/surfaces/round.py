@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, partial
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -21,6 +21,9 @@ from cmverify.cases.surfaces import bodies
 from cmverify.cases.surfaces.bodies import Treatment
 from cmverify.exchange.statement import L2_STRAINED, Pose, Statement, Target, laid_out
 from cmverify.judge.norms import relative_l2
+
+if TYPE_CHECKING:
+    from solver import ElasticTensor
 
 Shape = Literal["disc", "hole"]
 #: Of the hole; the plate has width 1, so that 100 cells across are 20 cells per radius.
@@ -42,6 +45,17 @@ def stiffness(solid: str) -> Array:
     if solid == "orthotropic":
         return materials.turned(materials.TENSORS["bone"], 30.0) / 25.0
     return materials.TENSORS["fully anisotropic"] / 100.0
+
+
+def material(solid: str) -> ElasticTensor:
+    """The same by the solver's constructors, which tractions of the reference then judge."""
+    from solver import ElasticTensor
+
+    if solid == "isotropic":
+        return ElasticTensor.isotropic(1.0, 0.25)
+    if solid == "orthotropic":
+        return ElasticTensor(materials.TENSORS["bone"] / 25.0).rotated(float(np.radians(30.0)))
+    return ElasticTensor(stiffness(solid))
 
 
 @dataclass(frozen=True)
@@ -102,7 +116,7 @@ def _polynomial(solid: str) -> Any:
 
 def scene_of(problem: Problem, treatment: Treatment, m: float, n: int) -> Any:
     """The body under the exact tractions."""
-    from solver import ElasticTensor, Load, Scene
+    from solver import Load, Scene
 
     def traction(x: Array, y: Array) -> Array:
         return problem.scale * problem.stress(x, y)
@@ -115,7 +129,7 @@ def scene_of(problem: Problem, treatment: Treatment, m: float, n: int) -> Any:
         region=problem.region,
         spacing=1.0 / n,
         m=m,
-        material=ElasticTensor(problem.voigt),
+        material=material(problem.solid),
         surface=treatment,
         supports=bodies.held((-at, 0.0), (at, 0.0), problem.displacement),
         loads=[Load.stress(traction, where=outer)],
