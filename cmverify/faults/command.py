@@ -19,11 +19,21 @@ def faults(
     ] = None,
     every: Annotated[
         bool,
-        typer.Option("--all", help="Try all cases that call the function, not the first two."),
+        typer.Option("--all", help="Try all cases that call the function, not the known two."),
+    ] = False,
+    once: Annotated[
+        bool, typer.Option("--once", help="One case a fault is enough: half the time.")
     ] = False,
     remember: Annotated[
-        bool, typer.Option("--remember", help="Search afresh and keep which cases catch what.")
+        bool,
+        typer.Option(
+            "--remember",
+            help="Look for a second case where none is known, and keep which cases catch what.",
+        ),
     ] = False,
+    seconds: Annotated[
+        float, typer.Option(help="With --remember: for a second case, a fault.", min=0.0)
+    ] = 30.0,
     jobs: Annotated[int, typer.Option(help="Worker processes; 0 for one a core.")] = 0,
     out: Annotated[Path, typer.Option("--out", help="Folder of the page.")] = Path("report"),
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the page.")] = False,
@@ -33,10 +43,12 @@ def faults(
     Exit code 0 only if every fault is caught by a case, or argued to be harmless.
     """
     from cmverify.console import console
-    from cmverify.faults import page, registry, table
+    from cmverify.faults import page, registry, table, trial
     from cmverify.run import folder
     from cmverify.run.threads import available_cores
 
+    if every and once:
+        refuse("--once asks for one case a fault, --all for all of them: give one")
     known = registry.all_faults()
     wanted = set(names or ())
     strange = wanted - {f.name for f in known} - {f.kind for f in known}
@@ -55,21 +67,23 @@ def faults(
     with screen.status("") as status:
         results = table.attempt(
             chosen,
-            {} if every or remember else table.read_map(),
+            {} if every else table.read_map(),
             jobs or available_cores(),
-            enough=10_000 if every else 2,
+            enough=10_000 if every else 1 if once else trial.ENOUGH,
+            seconds=seconds if remember else 0.0,
             listen=lambda what, done, total: status.update(f"{done} of {total}: {what}"),
         )
     if remember:
         table.write_map(results)
-    path = page.write(results, _command(names, every, out), out)
-    _print(screen, results)
+    path = page.write(results, _command(names, every, once, out), out, once)
+    _print(screen, results, once)
     screen.print(f"Page: {path}", soft_wrap=True)
     raise typer.Exit(0 if all(r.good for r in results) else 1)
 
 
-def _print(screen, results: list[Result]) -> None:  # type: ignore[no-untyped-def]
+def _print(screen, results: list[Result], once: bool) -> None:  # type: ignore[no-untyped-def]
     from cmverify.console import columns, mark, show
+    from cmverify.faults import alone
 
     rows = [
         (mark(True if r.catching else None if r.good else False), r.fault.name, r.fault.kind,
@@ -78,13 +92,13 @@ def _print(screen, results: list[Result]) -> None:  # type: ignore[no-untyped-de
     ]  # fmt: skip
     head = columns("", "fault", "kind", "state", "caught by", prose=("fault", "caught by"))
     show(screen, head, rows, keys=2)
-    caught = sum(bool(r.catching) for r in results)
-    argued = sum(r.good and not r.catching for r in results)
+    tally = alone.Tally.of(results)
+    if not once:
+        for why, faults in tally.groups.items():
+            names = "; ".join(f"{r.fault.name} ({r.cases[0]})" for r in faults)
+            screen.print(f"Caught by one case: {why}.\n  {names}", soft_wrap=True, highlight=False)
     colour = "green" if all(r.good for r in results) else "red"
-    screen.print(
-        f"{caught} of {len(results)} faults are caught, {argued} more are argued to be harmless.",
-        style=f"bold {colour}", soft_wrap=True,
-    )  # fmt: skip
+    screen.print(tally.sentence(once), style=f"bold {colour}", soft_wrap=True)
 
 
 def _who(result: Result) -> str:
@@ -92,6 +106,7 @@ def _who(result: Result) -> str:
     return ", ".join(result.cases[:3]) + (f" and {more} more" if more > 0 else "")
 
 
-def _command(names: list[str] | None, every: bool, out: Path) -> str:
+def _command(names: list[str] | None, every: bool, once: bool, out: Path) -> str:
     parts = ["cmverify faults", *(f'"{n}"' for n in names or [])]
-    return " ".join([*parts, *(["--all"] if every else []), f"--out {out}"])
+    parts += ["--all"] if every else ["--once"] if once else []
+    return " ".join([*parts, f"--out {out}"])

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cmverify.faults import alone
 from cmverify.report import pages
 from cmverify.report.wording import heading
 from cmverify.run.results import write_text
@@ -16,24 +17,29 @@ if TYPE_CHECKING:
 NAME = "faults.html"
 
 
-def write(results: Sequence[Result], command: str, folder: Path) -> Path:
-    """Write faults.html into a folder; returns its path."""
+def write(results: Sequence[Result], command: str, folder: Path, once: bool = False) -> Path:
+    """Write faults.html into a folder; returns its path. `once` if one case a fault was enough."""
+    tally = alone.Tally.of(results)
     kinds = [
         (kind, [r for r in results if r.fault.kind == kind])
         for kind in sorted({r.fault.kind for r in results})
     ]
+    contents = [(f"kind-{k}", heading(kind)) for k, (kind, _) in enumerate(kinds, 1)]
+    groups = {} if once else {w[:1].upper() + w[1:]: found for w, found in tally.groups.items()}
+    if groups:
+        contents.append(("alone", "Caught by one case alone"))
     text = (
         pages.environment()
         .get_template("faults.html")
         .render(
             css=pages.css(),
             name="faults put in on purpose",
-            contents=[(f"kind-{k}", heading(kind)) for k, (kind, _) in enumerate(kinds, 1)],
+            contents=contents,
             kinds=kinds,
-            total=len(results),
             good=all(r.good for r in results),
-            caught=sum(bool(r.catching) for r in results),
-            argued=sum(r.good and not r.catching for r in results),
+            sentence=tally.sentence(once),
+            groups=groups,
+            once=once,
             every="--all" in command,
             command=command,
         )

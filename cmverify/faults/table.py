@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
@@ -57,6 +58,7 @@ def attempt(
     known: Mapping[str, Sequence[Pair]],
     jobs: int,
     enough: int = trial.ENOUGH,
+    seconds: float = 0.0,
     listen: Callable[[str, int, int], None] = lambda what, done, total: None,
 ) -> list[Result]:
     """Try faults, first where the map says, then wherever a target is called.
@@ -69,31 +71,55 @@ def attempt(
         Worker processes of one thread each.
     enough : int
         Cases that have to catch a fault before the search ends.
+    seconds : float
+        What may be spent on finding so many cases for a fault that fewer of the map catch.
     listen : callable
         Told what is being done, and how much of it.
     """
     there = set(trial.pairs())
     plans = {f.name: [p for p in known.get(f.name, ()) if p in there] for f in chosen}
-    results: dict[str, Result] = {}
+    results = {f.name: Result(f, ()) for f in chosen}
     with child_environment(thread_environment(1)), workers(jobs) as pool:
+
+        def search(faults: Sequence[Fault], sound: Mapping[Pair, Sound], spend: float) -> None:
+            before = {f.name: results[f.name].found for f in faults}
+            waiting = {
+                pool.submit(
+                    trial.search, f.name, [(p, sound[p]) for p in plans[f.name]],
+                    enough, spend, before[f.name],
+                ): f
+                for f in faults
+            }  # fmt: skip
+            for done, future in enumerate(as_completed(waiting), 1):
+                fault = waiting[future]
+                results[fault.name] = Result(fault, tuple(future.result()))
+                listen(fault.name, done, len(waiting))
+
         sound = _sound(pool, sorted({p for plan in plans.values() for p in plan}), {}, listen)
-        first = [f for f in chosen if plans[f.name]]
-        for fault, found in _search(pool, first, plans, sound, enough, listen):
-            results[fault.name] = Result(fault, tuple(found))
-        missed = [f for f in chosen if f.name not in results or not results[f.name].good]
-        if missed:
+        search([f for f in chosen if plans[f.name]], sound, math.inf)
+        missed = [f for f in chosen if not results[f.name].good]
+        single = [
+            f
+            for f in chosen
+            if f not in missed
+            and seconds
+            and len(results[f.name].cases) < enough
+            # What is argued to be harmless is not looked for at length.
+            and not f.harmless
+        ]
+        if missed or single:
             sound = _sound(pool, sorted(there), sound, listen)
             cheap = sorted(sound, key=lambda pair: sound[pair].seconds)
-            plans = {
-                f.name: [
+            for fault in (*missed, *single):
+                tried = {(f.case, f.method) for f in results[fault.name].found}
+                plans[fault.name] = [
                     p
                     for p in cheap
-                    if f.target in sound[p].called or f.target.startswith(trial.JUDGES)
+                    if p not in tried
+                    and (fault.target in sound[p].called or fault.target.startswith(trial.JUDGES))
                 ]
-                for f in missed
-            }
-            for fault, found in _search(pool, missed, plans, sound, enough, listen):
-                results[fault.name] = Result(fault, tuple(found))
+            search(missed, sound, math.inf)
+            search(single, sound, seconds)
     return [results[f.name] for f in chosen]
 
 
@@ -111,25 +137,6 @@ def _sound(
     return found
 
 
-def _search(
-    pool: ProcessPoolExecutor,
-    faults: Sequence[Fault],
-    plans: Mapping[str, Sequence[Pair]],
-    sound: Mapping[Pair, Sound],
-    enough: int,
-    listen: Callable[[str, int, int], None],
-) -> list[tuple[Fault, list[Found]]]:
-    waiting = {
-        pool.submit(trial.search, f.name, [(p, sound[p]) for p in plans[f.name]], enough): f
-        for f in faults
-    }
-    found = []
-    for done, future in enumerate(as_completed(waiting), 1):
-        found.append((waiting[future], future.result()))
-        listen(waiting[future].name, done, len(waiting))
-    return found
-
-
 def read_map() -> Map:
     """Which methods of which cases caught a fault when the map was last made."""
     resource = files("cmverify.faults") / MAP
@@ -144,7 +151,10 @@ def write_map(results: Sequence[Result]) -> Path:
     known: dict[str, list[Pair]] = read_map()
     for result in results:
         if seen := result.catching or tuple(f for f in result.found if f.moved):
-            known[result.fault.name] = [(f.case, f.method) for f in seen[: trial.ENOUGH]]
+            # One method a case: a second says nothing new.
+            by_case = {f.case: f.method for f in reversed(seen)}
+            cases = dict.fromkeys(f.case for f in seen)
+            known[result.fault.name] = [(c, by_case[c]) for c in cases][: trial.ENOUGH]
     lines = [f" {_text(name)}: {_text(pairs)}" for name, pairs in sorted(known.items())]
     path = Path(str(files("cmverify.faults") / MAP))
     path.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")

@@ -6,6 +6,7 @@ notes which targets are called and how long it takes; with one it is judged agai
 
 from __future__ import annotations
 
+import math
 import signal
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -76,15 +77,34 @@ def sound(pair: Pair) -> Sound:
     return Sound(outcomes, called, time.perf_counter() - begun)
 
 
-def search(name: str, plan: Sequence[tuple[Pair, Sound]], enough: int = ENOUGH) -> list[Found]:
-    """Try a fault on methods one after the other until so many cases have caught it."""
-    fault, found = faults.get(name), list[Found]()
+def search(
+    name: str,
+    plan: Sequence[tuple[Pair, Sound]],
+    enough: int = ENOUGH,
+    seconds: float = math.inf,
+    found: Sequence[Found] = (),
+) -> list[Found]:
+    """Try a fault on methods one after the other until so many cases have caught it.
+
+    Parameters
+    ----------
+    name : str
+        Of the fault.
+    plan : sequence of (Pair, Sound)
+    enough : int
+    seconds : float
+        What may be spent, by what the methods take without the fault.
+    found : sequence of Found
+        What is known of it already, first in what is returned.
+    """
+    fault, found, spent = faults.get(name), list(found), 0.0
     for pair, before in plan:
         catching = {f.case for f in found if f.caught}
-        if len(catching) >= enough:
+        if len(catching) >= enough or spent + before.seconds > seconds:
             break
         # A second method of a case that has caught it says nothing new.
         if pair[0] not in catching:
+            spent += before.seconds
             found.append(attempt(fault, pair, before))
     return found
 

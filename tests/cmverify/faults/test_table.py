@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 from cmverify.case import Level
 from cmverify.cases import registry as cases
 from cmverify.cli import app
-from cmverify.faults import page, registry, table, trial
+from cmverify.faults import alone, page, registry, table, trial
 from cmverify.faults.changes import result, scaled
 from cmverify.faults.fault import Fault, find
 from cmverify.faults.trial import Found
@@ -94,6 +94,14 @@ def test_a_search_stops_when_enough_cases_have_caught_it(sound):
     assert len(trial.search("every error halved", plan, enough=2)) == 1
 
 
+def test_a_search_spends_no_more_than_it_may(sound):
+    plan = [(PAIR, sound)]
+    assert trial.search("every error halved", plan, seconds=0.5 * sound.seconds) == []
+    known = [Found("another", "m", "seen", True, True)]
+    found = trial.search("every error halved", plan, enough=2, found=known)
+    assert [f.case for f in found] == ["another", PAIR[0]]
+
+
 def test_targets_that_are_called_are_counted(sound):
     assert NORM in sound.called
     assert "solver.recovery.stress" not in sound.called
@@ -123,9 +131,10 @@ def test_the_map_names_what_there_is():
 def test_a_map_is_read_as_it_was_written(tmp_path, monkeypatch):
     monkeypatch.setattr(table, "files", lambda package: tmp_path)
     fault = Fault("f", NORM, scaled(2.0), "tests")
-    found = tuple(Found(f"c{i}", "m", "x", True, True) for i in range(3))
+    found = tuple(Found(f"c{i // 2}", f"m{i}", "x", True, True) for i in range(6))
     table.write_map([table.Result(fault, found)])
-    assert table.read_map() == {"f": [("c0", "m"), ("c1", "m")]}
+    # Of each case one method, of two cases.
+    assert table.read_map() == {"f": [("c0", "m0"), ("c1", "m2")]}
 
 
 def test_the_page_says_what_is_caught_and_what_is_not(tmp_path):
@@ -139,6 +148,37 @@ def test_the_page_says_what_is_caught_and_what_is_not(tmp_path):
     assert "never called" in text
     assert "two &lt;b&gt;" in text
     assert browser.dead_links(tmp_path / page.NAME) == []
+
+
+def test_what_one_case_alone_catches_is_said_with_the_reason(tmp_path, monkeypatch):
+    def caught(name, *cases):
+        found = tuple(Found(case, "m", "q", True, True) for case in cases)
+        return table.Result(Fault(name, NORM, scaled(2.0), "norms"), found)
+
+    monkeypatch.setattr(alone, "ALONE", {"because of this": ("two",)})
+    results = [caught("one", "a", "b"), caught("two", "a"), caught("three", "b")]
+    tally = alone.Tally.of(results)
+    assert (tally.total, tally.caught, tally.twice, tally.argued) == (3, 3, 1, 0)
+    assert tally.groups == {"because of this": [results[1]], alone.UNKNOWN: [results[2]]}
+    assert tally.sentence(once=False) == (
+        "3 of 3 faults are caught, 1 of them by two cases or more."
+    )
+    text = page.write(results, "cmverify faults", tmp_path).read_text()
+    assert "Because of this (1):" in text
+    assert "by two cases" in text
+    assert "by two cases" not in page.write(results, "", tmp_path, once=True).read_text()
+
+
+def test_reasons_are_given_for_faults_that_one_case_of_the_map_catches():
+    known = table.read_map()
+    single = {
+        f.name for f in registry.all_faults()
+        if not f.harmless and len({case for case, _ in known.get(f.name, ())}) < 2
+    }  # fmt: skip
+    argued = [name for faults in alone.ALONE.values() for name in faults]
+    assert len(argued) == len(set(argued))
+    assert set(argued) == single
+    assert 2 * len(single) < len(registry.all_faults())
 
 
 def test_an_unknown_fault_is_refused():
