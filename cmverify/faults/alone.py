@@ -73,8 +73,8 @@ ALONE: dict[str, tuple[str, ...]] = {
         "body force of a polynomial + 1 %",
     ),
     "an effect that one case alone has at quick: deformation that heats, conductors that "
-    "are strained, heat that a current makes in a bar, cracks that are sensed, leads with "
-    "a rim, pins that turn": (
+    "are strained, heat that a current makes in a bar, cracks that are sensed or "
+    "driven by temperatures, leads with a rim, pins that turn": (
         "thermal forces and their adjoint + 2 %",
         "thermoelastic loss - 15 %",
         "gauge of bonds + 1 %",
@@ -88,6 +88,7 @@ ALONE: dict[str, tuple[str, ...]] = {
         "drop of a sensor that grows with itself",
         "leads without a rim",
         "pins that do not turn",
+        "expansion does half its work",
     ),
     "tips are calibrated in one case alone: elsewhere they stay as the paper draws them": (
         "fields of calibrated tips turned by 5 degrees",
