@@ -74,7 +74,7 @@ ALONE: dict[str, tuple[str, ...]] = {
     ),
     "an effect that one case alone has at quick: deformation that heats, conductors that "
     "are strained, heat that a current makes in a bar, cracks that are sensed or driven "
-    "by temperatures, leads with a rim, pins that turn": (
+    "by temperatures, leads that are fed or left floating, pins that turn": (
         "thermal forces and their adjoint + 2 %",
         "thermoelastic loss - 15 %",
         "gauge of bonds + 1 %",
@@ -88,6 +88,9 @@ ALONE: dict[str, tuple[str, ...]] = {
         "drop of a sensor that grows with itself",
         "expansion does half its work",
         "leads without a rim",
+        "Joule heat halved",
+        "current of a lead + 1 %",
+        "no conductor floats",
         "pins that do not turn",
     ),
     "tips are calibrated in one case alone: elsewhere they stay as the paper draws them": (
