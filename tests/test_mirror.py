@@ -44,6 +44,7 @@ ELSEWHERE = {
     "cmverify/faults/in_references.py": "tests/cmverify/faults/test_table.py",
     "cmverify/faults/in_dynamics.py": "tests/cmverify/faults/test_table.py",
     "cmverify/faults/in_solver.py": "tests/cmverify/faults/test_table.py",
+    "cmverify/faults/in_methods.py": "tests/cmverify/faults/test_table.py",
     "cmverify/faults/page.py": "tests/cmverify/faults/test_table.py",
     "cmverify/faults/registry.py": "tests/cmverify/faults/test_table.py",
     "cmverify/faults/trial.py": "tests/cmverify/faults/test_table.py",
