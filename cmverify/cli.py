@@ -251,6 +251,8 @@ def _run(
                 dask=dask,
             )  # fmt: skip
         info = replace(info, wall_seconds=time.perf_counter() - clock, finished=True)
+        if dask is not None:
+            info = replace(info, threads=max(record.threads for record in records))
         summary.save_info(info, out)
     except KeyboardInterrupt:
         done = sum(1 for task in plan if _recorded(out, task))

@@ -1,7 +1,8 @@
 """Work on the workers of a Dask scheduler: cases of a run, points of a sweep.
 
 A worker that dies takes nothing finished with it: what it has done is on disk, or has come back
-already. What it was at is sent to another one, which looks first whether it is there.
+already. What it was at is sent to another one, which looks first whether it is there. Whether a
+folder is the head's own one and not another of the same name is proved by a mark in it.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import platform
 import threading
 import uuid
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -68,6 +70,48 @@ def done_on(
             reason = " ".join(str(task.exception()).split()) or task.status
             yield tasks[task], None, reason
         task.release()
+
+
+def threads_of(client: Any) -> int:
+    """Threads that all workers have for kernels: what they measure with, whoever measures.
+
+    A scheduler without workers is waited for until it has one.
+    """
+    counts = client.run(threads_here) or {"": client.submit(threads_here, pure=False).result()}
+    return min(counts.values())
+
+
+def threads_here() -> int:
+    """Threads that kernels may use in this process."""
+    import numba
+
+    return int(numba.get_num_threads())
+
+
+@contextmanager
+def marked(folder: Path) -> Iterator[str]:
+    """A mark in a folder for the time of the block, by which `is_shared` knows it."""
+    for left in folder.glob(".shared-*"):  # of a run that was killed
+        left.unlink(missing_ok=True)
+    mark = uuid.uuid4().hex
+    path = _marker(folder, mark)
+    path.write_text(mark, encoding="utf-8")
+    try:
+        yield mark
+    finally:
+        path.unlink(missing_ok=True)
+
+
+def is_shared(folder: Path, mark: str) -> bool:
+    """Whether a folder of this machine is the one that was marked: its name proves nothing."""
+    try:
+        return _marker(folder, mark).read_text(encoding="utf-8") == mark
+    except (OSError, ValueError):
+        return False
+
+
+def _marker(folder: Path, mark: str) -> Path:
+    return folder / f".shared-{mark}"
 
 
 def journal(path: Path, what: str, key: str) -> None:

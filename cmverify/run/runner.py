@@ -15,8 +15,10 @@ from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
+from typing import Any
 
 from cmverify.case import Case, Failed, Level
 from cmverify.run import results, unfinished
@@ -82,8 +84,8 @@ def run(
     registry : str
         Module in which workers look cases up by name.
     dask : str, optional
-        Address of a Dask scheduler whose workers measure instead; there `timeout` ends nothing,
-        and records of any number of threads are reused.
+        Address of a Dask scheduler whose workers measure instead, all with as many threads as each
+        of them has; there `timeout` ends nothing.
 
     Raises
     ------
@@ -92,7 +94,28 @@ def run(
     ClusterError
         If no scheduler answers.
     """
-    threads = None if dask else threads_per_worker(jobs)
+    if dask is None:
+        return _run(cases, level, folder, resume, listen, threads_per_worker(jobs),
+                    partial(_drain, folder=folder, jobs=jobs, timeout=timeout, listen=listen,
+                            registry=registry))  # fmt: skip
+    from cmverify.run.cluster import connected, threads_of
+
+    with connected(dask) as client:
+        return _run(cases, level, folder, resume, listen, threads_of(client),
+                    partial(_on_cluster, client=client, folder=folder, listen=listen,
+                            registry=registry))  # fmt: skip
+
+
+def _run(
+    cases: Sequence[Case],
+    level: Level,
+    folder: Path,
+    resume: bool,
+    listen: Callable[[Event], None],
+    threads: int,
+    measure: Callable[..., None],
+) -> list[results.Record]:
+    """As `run`; `measure` does, with so many threads, what there is no record of."""
     tasks = plan(cases, level)
     todo: deque[Task] = deque()
     current = results.source_fingerprint()
@@ -109,32 +132,31 @@ def run(
     # grow take hundreds of solves at any resolution.
     growing = {c.name for c in cases if "fracture" in c.tags}
     todo = deque(sorted(todo, key=lambda task: (task[0] not in growing, -task[2])))
-    if threads is None:
-        _on_cluster(todo, folder, str(dask), listen, registry, current)
-    else:
-        _drain(todo, folder, min(jobs, max(len(todo), 1)), threads, timeout, listen, registry)
+    measure(todo, threads=threads)
     return [results.load(results.stem(folder, *task).with_suffix(".json")) for task in tasks]
 
 
 def _on_cluster(
     todo: Iterable[Task],
     folder: Path,
-    address: str,
+    client: Any,
+    threads: int,
     listen: Callable[[Event], None],
     registry: str,
-    current: str,
 ) -> None:
     """Have everything measured by the workers of a Dask scheduler."""
-    from cmverify.run.cluster import connected, done_on
+    from cmverify.run.cluster import done_on, marked
 
     tasks = {results.stem(folder, *task).relative_to(folder).as_posix(): task for task in todo}
-    place = str(folder.resolve())
-    given = {key: (registry, *task, place, current) for key, task in tasks.items()}
-    with connected(address) as client:
+    place, current = str(folder.resolve()), results.source_fingerprint()
+    with marked(folder) as mark:
+        given = {
+            key: (registry, *task, place, mark, threads, current) for key, task in tasks.items()
+        }
         for key, record, reason in done_on(client, measured, given):
             task = tasks[key]
             if reason is not None:
-                _fail(task, Failed("WorkerDied", reason), folder, 1, 0.0, listen)
+                _fail(task, Failed("WorkerDied", reason), folder, threads, 0.0, listen)
                 continue
             if not results.stem(folder, *task).with_suffix(".json").is_file():
                 _save(record, folder)  # from a machine with other disks
@@ -147,7 +169,7 @@ def plan(cases: Iterable[Case], level: Level) -> list[Task]:
     return [(c.name, m.name, n) for c in cases for m, n in c.plan(level)]
 
 
-def _reusable(folder: Path, task: Task, threads: int | None, fingerprint: str) -> bool:
+def _reusable(folder: Path, task: Task, threads: int, fingerprint: str) -> bool:
     path = results.stem(folder, *task).with_suffix(".json")
     if not path.exists():
         return False
@@ -156,7 +178,7 @@ def _reusable(folder: Path, task: Task, threads: int | None, fingerprint: str) -
     except ValueError:
         return False
     same_code = record.fingerprint == fingerprint
-    return same_code and threads in (None, record.threads) and not record.failed
+    return same_code and threads == record.threads and not record.failed
 
 
 def _drain(

@@ -14,7 +14,7 @@ from weakref import WeakSet
 
 from cmverify.case import Case, Failed, Measurement, Method, Outcome, Setting
 from cmverify.run import results, unfinished
-from cmverify.run.cluster import ALONE, journal
+from cmverify.run.cluster import ALONE, is_shared, journal, threads_here
 from cmverify.run.lifeline import hold
 
 #: What the workers of a cluster began and finished, beside the records.
@@ -119,12 +119,20 @@ def record(
 
 
 def measured(
-    registry: str, name: str, method: str, resolution: int, folder: str, fingerprint: str
+    registry: str,
+    name: str,
+    method: str,
+    resolution: int,
+    folder: str,
+    mark: str,
+    threads: int,
+    fingerprint: str,
 ) -> results.Record:
     """Measure on a worker of a cluster, unless the record stands there already.
 
-    Where the run's folder is on this machine's disks, the record is written there and a long
-    measurement goes on from what a worker that died has left.
+    Where the run's folder is on this machine's disks (its mark is there), the record is written
+    there and a long measurement goes on from what a worker that died has left. No more than
+    `threads` are used, so that all times of a run are taken with as many.
 
     Raises
     ------
@@ -137,36 +145,43 @@ def measured(
     if results.source_fingerprint() != fingerprint:
         raise RuntimeError("the cluster's workers have another version of cmverify than the run")
     place = Path(folder)
-    here = place.is_dir()
+    here = is_shared(place, mark)
     stem = results.stem(place, name, method, resolution)
     with ALONE:
-        if here and (known := _finished(stem, fingerprint)) is not None:
+        if here and (known := _finished(stem, fingerprint, threads)) is not None:
             return known
-        journal(place / LOG, "started", stem.relative_to(place).as_posix())
+        if here:
+            journal(place / LOG, "started", stem.relative_to(place).as_posix())
         case = import_module(registry).get(name)
         keep = unfinished.kept_in(unfinished.folder(stem, fingerprint)) if here else nullcontext()
-        with keep:
-            done = record(case, case.method(method), resolution, threads_here(), fingerprint)
+        with keep, at_most(threads) as used:
+            done = record(case, case.method(method), resolution, used, fingerprint)
         if here:
             results.save(done, place)
             journal(place / LOG, "finished", stem.relative_to(place).as_posix())
         return done
 
 
-def _finished(stem: Path, fingerprint: str) -> results.Record | None:
-    """The record that this very code has written, or None."""
+def _finished(stem: Path, fingerprint: str, threads: int) -> results.Record | None:
+    """The record that this very code has written with so many threads, or None."""
     try:
         found = results.load(stem.with_suffix(".json"))
     except (OSError, ValueError):
         return None
-    return found if found.fingerprint == fingerprint else None
+    return found if (found.fingerprint, found.threads) == (fingerprint, threads) else None
 
 
-def threads_here() -> int:
-    """Threads that kernels use in this process."""
+@contextmanager
+def at_most(threads: int) -> Iterator[int]:
+    """Kernels with no more than so many threads; how many they have."""
     import numba
 
-    return int(numba.get_num_threads())
+    before = threads_here()
+    numba.set_num_threads(min(threads, before))
+    try:
+        yield threads_here()
+    finally:
+        numba.set_num_threads(before)
 
 
 def serve(

@@ -167,13 +167,13 @@ def _pool(
 
 def on_cluster(todo: Sequence[Point], folder: Path, address: str) -> Done:
     """The same, on the workers of a Dask scheduler."""
-    from cmverify.run.cluster import connected, done_on
+    from cmverify.run.cluster import connected, done_on, marked
 
     if not todo:
         return
     points = {point.key: point for point in todo}
-    given = {point.key: (point, str(folder.resolve())) for point in todo}
-    with connected(address) as client:
+    with connected(address) as client, marked(folder) as mark:
+        given = {point.key: (point, str(folder.resolve()), mark) for point in todo}
         for key, record, reason in done_on(client, work.solve, given):
             yield points[key], record if reason is None else reason
 

@@ -36,19 +36,22 @@ def save(folder: Path, record: dict[str, Any]) -> None:
     write_text(record_path(folder, record["key"]), json.dumps(record, indent=1))
 
 
-def solve(point: Point, folder: str) -> dict[str, Any]:
+def solve(point: Point, folder: str, mark: str | None = None) -> dict[str, Any]:
     """Solve a point and write its record, unless that stands there already.
 
     A worker that dies after it has written costs nothing: who is sent the point again reads the
-    record. Where the folder is not this machine's, the record goes back as it is returned.
+    record. Where the folder is not this machine's (on a cluster its mark is not there), the record
+    goes back as it is returned.
     """
     place = Path(folder)
+    here = mark is None or cluster.is_shared(place, mark)
     with ALONE:
-        if (known := load(place, point.key)) is not None:
+        if here and (known := load(place, point.key)) is not None:
             return known
-        journal(place, "started", point.key)
+        if here:
+            journal(place, "started", point.key)
         record = _record(point)
-        if place.is_dir():
+        if here:
             save(place, record)
             journal(place, "finished", point.key)
         return record

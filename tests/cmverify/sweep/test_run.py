@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 
 from cmverify.cli import app
 from cmverify.exchange import budget
+from cmverify.run import cluster
 from cmverify.sweep import grid, run, work
 from solver.analyses import statics
 from tests.cmverify.sweep.test_grid import SCENE
@@ -51,6 +52,18 @@ def test_too_little_memory_is_no_answer_of_the_model(scene, tmp_path, monkeypatc
             work.solve(point, str(tmp_path))
     assert work.load(tmp_path, point.key) is None
     assert work.solve(point, str(tmp_path))["refused"] == ""
+
+
+def test_a_folder_of_the_same_name_is_no_shared_one(scene, tmp_path):
+    (point,) = grid.points(scene, {"m": [2]})
+    (tmp_path / "points").mkdir()
+    work.save(tmp_path, {"key": point.key, "of": "another sweep"})
+    with cluster.marked(tmp_path) as mark:
+        assert work.solve(point, str(tmp_path), mark)["of"] == "another sweep"
+    record = work.solve(point, str(tmp_path), "another head's")
+    assert "of" not in record
+    assert work.load(tmp_path, point.key) == {"key": point.key, "of": "another sweep"}
+    assert not (tmp_path / "sweep.log").exists()
 
 
 def test_one_row_a_point_and_none_twice(scene, tmp_path, monkeypatch):
