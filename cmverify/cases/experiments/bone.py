@@ -64,7 +64,9 @@ import numpy as np
 
 from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measurement, Method
 from cmverify.cases.common import adapters, warm
+from cmverify.exchange.statement import ABSOLUTE, LARGEST, Pose, Statement, Target
 
+from .posed import PATH, outside, straying
 from .running import DESCRIPTIONS, Led, bridging, circle, lead
 
 if TYPE_CHECKING:
@@ -276,6 +278,37 @@ def bond(specimen: Specimen, n: int) -> Measurement:
     )  # fmt: skip
 
 
+def _state(specimen: Specimen, n: int) -> Statement:
+    """The specimen as anybody's program is told it."""
+    zero, degrees, tip = np.zeros(1), specimen.degrees, (TIP, 0.0)
+    if degrees == 0.0:
+        read: Callable[[Array], Array] = partial(straying, tip=tip, size=UNIT, width=WIDTH)
+        targets = [
+            Target("straying", "straying", "W", zero, ABSOLUTE, read=read),
+            Target("peak", "peak", "N", np.array([critical_load()]), LARGEST, needed=False),
+        ]
+    else:
+        wanted = criterion(degrees)
+        least = 0.0 if wanted is None else heading(wanted)
+        read = partial(outside, tip=tip, size=UNIT, reach=EARLY, least=least, most=degrees)
+        targets = [Target("outside_sector", "beyond the fibres", "°", zero, ABSOLUTE, read=read)]
+    stiffness = np.array([THICKNESS * reference(degrees)[0]])
+    targets.append(Target("stiffness", "stiffness", "N/m", stiffness, LARGEST, needed=False))
+    return Statement(
+        specimen.scene(n)[0],
+        tuple(targets),
+        (
+            "The pins are rigid discs bonded to their holes, which turn freely: one stands, the "
+            "other is moved by 1 mm times a factor, until the force has fallen to a fifth of its "
+            "peak. Nothing breaks in them.",
+            "The toughness is 2106 J/m² across the fibres and 989 along them (Eq. 109, n = 8), "
+            f"which run at {degrees:g}° to the crack; the thickness is 1 mm.",
+            PATH,
+            "stiffness: of the pins before anything breaks; peak: the largest force.",
+        ),
+    )
+
+
 def _method(
     degrees: float, surface: Surface = "volume", groove: float = 1.0, **ladder: tuple[int, ...]
 ) -> Method:
@@ -351,5 +384,9 @@ CASES = (
         featured=_STRAIGHT.name,
         length="1.5 mm",
         timed=False,
+        poses=tuple(
+            Pose(f"ζ = {degrees:g}°", partial(_state, Specimen(degrees)), f"{degrees:g}°")
+            for degrees in (0.0, 45.0, 60.0)
+        ),
     ),
 )  # fmt: skip

@@ -68,7 +68,9 @@ import numpy as np
 
 from cmverify.case import Array, Case, Check, Curve, Level, LinePlot, Measurement, Method
 from cmverify.cases.common import warm
+from cmverify.exchange.statement import ABSOLUTE, Pose, Statement, Target
 
+from .posed import PATH, from_the_flank, short
 from .running import DESCRIPTIONS, Led, lead, unmirrored, uprights
 
 if TYPE_CHECKING:
@@ -298,6 +300,27 @@ def _curve(led: Led, compare: bool = True) -> LinePlot:
     )  # fmt: skip
 
 
+def _state(pair: Pair, n: int) -> Statement:
+    """The offset pair as anybody's program is told it."""
+    zero, tip = np.zeros(1), (-INNER, -pair.lift)
+    flank = partial(from_the_flank, tip=tip, unit=HALF, outer=OUTER, horizon=pair.m * HALF / n)
+    passed = partial(short, tip=tip, unit=HALF)
+    return Statement(
+        pair.scene(n),
+        (
+            Target("from_the_flank", "from the flank", "horizons", zero, ABSOLUTE, read=flank),
+            Target("short_of_passing", "short of passing", "c", zero, ABSOLUTE, read=passed),
+        ),
+        (
+            "What is prescribed is times a factor that is raised until the body has parted.",
+            "The toughness is 10 J/m² in all directions.",
+            "Half a turn leaves the problem as it is: the path of the left crack's inner tip is "
+            "judged beside its own image.",
+            PATH,
+        ),
+    )
+
+
 def _levels(**ladder: tuple[int, ...]) -> dict[Level, tuple[int, ...]]:
     return {level: ladder.get(level.value, ()) for level in Level}
 
@@ -380,5 +403,6 @@ CASES = (
         featured="collinear m=3",
         length="c",
         timed=False,
+        poses=(Pose("offset", partial(_state, Pair(offset=True)), "offset"),),
     ),
 )  # fmt: skip
