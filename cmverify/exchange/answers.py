@@ -236,7 +236,7 @@ def _times(path: Path, times: Any) -> Array:
 
 
 def _json(path: Path, targets: Sequence[Target]) -> Answer:
-    held = json.loads(path.read_text(encoding="utf-8"))
+    held = json.loads(_text(path), object_pairs_hook=_once)
     if not isinstance(held, dict):
         raise AnswerError(f"{path}: an answer in JSON is an object of named lists of numbers")
     arrays = {key: np.asarray(value) for key, value in held.items() if not isinstance(value, str)}
@@ -248,10 +248,33 @@ def _json(path: Path, targets: Sequence[Target]) -> Answer:
     return _answer(path.stem, arrays, targets, **places)
 
 
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """A JSON object whose names are all different."""
+    names = [name for name, _ in pairs]
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        raise ValueError(f"it says {twice[0]!r} twice")
+    return dict(pairs)
+
+
+def _text(path: Path) -> str:
+    raw = path.read_bytes()
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw[: error.start].count(b"\n") + 1
+        raise AnswerError(f"{path}:{line}: the file is not UTF-8") from error
+
+
 def _csv(path: Path, targets: Sequence[Target]) -> Answer:
     """A header of names; x, y and columns of fields, or one column of numbers a key."""
-    lines = path.read_text(encoding="utf-8-sig").splitlines()
+    lines = [row for row in _text(path).splitlines() if row.strip()]
+    if len(lines) < 2:
+        raise AnswerError(f"{path}: a header of names and rows of numbers are needed")
     names = [name.strip().strip('"') for name in lines[0].lstrip("# ").split(",")]
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        raise AnswerError(f"{path} has two columns {twice[0]!r}: which is it?")
+    if len(names) == 1 and (other := next((c for c in ";\t " if c in names[0]), None)):
+        raise AnswerError(f"{path}: columns are parted by commas, not by {other!r}")
     table = np.genfromtxt(lines[1:], delimiter=",", dtype=float, ndmin=2)
     if table.shape[1] != len(names):
         raise AnswerError(f"{path}: {len(names)} names and {table.shape[1]} columns")
@@ -294,9 +317,12 @@ def _mesh(
     path: Path, targets: Sequence[Target]
 ) -> tuple[Array, NDArray[np.int64] | None, dict[str, Any]]:
     """Points, triangles and data of a file; data of cells at their middles, if that is all."""
-    import meshio
+    from cmverify.exchange import mesh_file
 
-    mesh = meshio.read(path)
+    try:
+        mesh = mesh_file.read(path)
+    except ValueError as error:
+        raise AnswerError(str(error).replace(path.name, str(path), 1)) from error
     points = _places(path, mesh.points)
     wanted = {name for t in targets for name in (t.key, *t.names)}
     if wanted & set(mesh.point_data) or not wanted & set(mesh.cell_data):

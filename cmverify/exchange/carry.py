@@ -10,7 +10,9 @@ The rule, in this order:
    the point, by least squares with weights 1/r²; a linear one where they do not decide a quadratic.
 
 A point from which an answer's nearest value is more than two spacings of the answer away is
-refused: nothing is made up. In time values are cubic splines between the answer's times.
+refused: nothing is made up. So are points that span a hundred times what the judged ones span (of
+another unit), and two values at one place that differ (but for the faces of slits in meshes). In
+time values are cubic splines between the answer's times.
 """
 
 from __future__ import annotations
@@ -29,6 +31,10 @@ from cmverify.exchange.statement import Array, Target
 
 SAME = 1e-6
 NEAR, CANDIDATES, FAR = 12, 36, 2.0
+#: Extents of an answer's points over those of the judged ones that are another unit's.
+UNIT = 100.0
+#: Values at one place that differ by this share of the largest are two.
+TWO = 1e-6
 
 Segments = Sequence[tuple[tuple[float, float], tuple[float, float]]]
 
@@ -79,6 +85,8 @@ def _at_points(
     distance, nearest = tree.query(wanted)
     # Doubled nodes of a slit lie at one place: an interpolation on triangles knows the side.
     known = distance <= SAME * spacing
+    _refuse_other_units(answer, wanted)
+    _refuse_two_values(answer, tree, flat, SAME * spacing, wanted[known], bool(len(cracks)))
     found = flat[nearest].astype(float)
     rest = np.flatnonzero(~known)
     if len(rest):
@@ -87,6 +95,33 @@ def _at_points(
         else:
             found[rest] = _by_fit(answer, tree, wanted[rest], flat, cracks)
     return found.reshape(len(wanted), *values.shape[1:])
+
+
+def _refuse_other_units(answer: Answer, wanted: Array) -> None:
+    assert answer.points is not None
+    own, judged = (float(np.ptp(p, axis=0).max()) for p in (answer.points, wanted))
+    if judged > 0 and own > UNIT * judged:
+        raise AnswerError(
+            f"{answer.name}: its points span {own:.3g} m where those that are judged span "
+            f"{judged:.3g} m: are they in metres?"
+        )
+
+
+def _refuse_two_values(
+    answer: Answer, tree: KDTree, values: Array, near: float, known: Array, cracked: bool
+) -> None:
+    """Refuse points given twice with values that differ, where they are taken as they are."""
+    pairs = tree.query_pairs(near, output_type="ndarray")
+    if answer.triangles is not None or cracked:
+        # Nodes of both faces of a slit; where one of them is judged nobody knows which.
+        beside = KDTree(known).query(tree.data[pairs[:, 0]])[0] if len(known) else np.zeros(0)
+        pairs = pairs[beside <= 2 * near] if len(known) else pairs[:0]
+    with np.errstate(invalid="ignore"):
+        apart = np.abs(values[pairs[:, 0]] - values[pairs[:, 1]]).max(axis=1, initial=0.0)
+        size = np.nanmax(np.abs(values), initial=0.0)
+    if (wrong := np.flatnonzero(apart > TWO * size)).size:
+        x, y = tree.data[pairs[wrong[0], 0]]
+        raise AnswerError(f"{answer.name} has two values at ({x:g}, {y:g})")
 
 
 def _on_triangles(answer: Answer, wanted: Array, values: Array) -> Array:

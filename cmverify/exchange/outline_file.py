@@ -7,10 +7,8 @@ but for a `scale`; a DXF file that states its unit needs none.
 
 from __future__ import annotations
 
-import io
 import re
 from collections.abc import Iterable, Iterator
-from contextlib import redirect_stderr, redirect_stdout
 from functools import reduce
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -101,17 +99,9 @@ def _meshed(path: Path, part: str | None, chord: float) -> Cells:
     """Points (n, 3) and blocks of plane cells of a file, see `_shapes`."""
     if path.suffix.lower() == ".geo":
         return _geo(path, part, chord)
-    import meshio
+    from cmverify.exchange import mesh_file
 
-    try:
-        # What it cannot read it tells a terminal, and leaves.
-        with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
-            mesh = meshio.read(path)
-    except SystemExit as error:
-        raise ValueError(f"{path.name} cannot be read as a mesh by meshio") from error
-    except Exception as error:
-        said = " ".join(str(error).split()) or type(error).__name__
-        raise ValueError(f"{path.name} cannot be read as a mesh: {said}") from error
+    mesh = mesh_file.read(path)
     chosen = _group(mesh, part, path.name)
     blocks = []
     for number, block in enumerate(mesh.cells):

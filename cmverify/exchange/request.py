@@ -104,7 +104,8 @@ class Request:
             if isinstance(error, kind):
                 # A body that nothing holds has no table of supports to point to.
                 return place if place[0] in self.source.data else ("discretisation",)
-        return ("discretisation",)
+        # What an analysis says of itself, such as of its electrodes, is in its table.
+        return (self.analysis,) if self.analysis in self.source.data else ("discretisation",)
 
 
 def timed(file: SceneFile) -> Iterator[tuple[Place, InTime]]:

@@ -238,6 +238,7 @@ class Disc(Region):
 class Polygon(Region):
     """Simple polygon through `vertices` (without holes; subtract those).
 
+    A vertex that repeats the one before it, as in a ring that says its first one again, is one.
     `slack` (m) is the rounding of where it was drawn; `about` its centre and the vertices from
     there, where they are known better than the vertices are.
     """
@@ -249,6 +250,11 @@ class Polygon(Region):
     def __post_init__(self) -> None:
         if not np.all(np.isfinite(np.asarray(self.vertices, dtype=np.float64))):
             raise ValueError(f"a polygon with a vertex that is not finite: {self.vertices}")
+        before = self.vertices[-1:] + self.vertices[:-1]
+        if self.about is None and any(a == b for a, b in zip(before, self.vertices, strict=True)):
+            # A side without length has no normal.
+            single = [b for a, b in zip(before, self.vertices, strict=True) if a != b]
+            object.__setattr__(self, "vertices", tuple(single))
         shape = shapely.Polygon(self.vertices) if len(self.vertices) > 2 else None
         if shape is None or not shape.is_valid or shape.area == 0:
             raise ValueError(f"not a simple polygon with an area: {self.vertices}")

@@ -205,3 +205,38 @@ def test_a_crack_s_path_is_read_as_such_or_as_points(tmp_path):
         assert np.array_equal(answer.values["path"], path)
     (tmp_path / "d.json").write_text(json.dumps({"angle": [40.0]}))
     assert set(read(tmp_path / "d.json", [angle, line]).values) == {"angle"}
+
+
+ROWS = "0,0,1\n1,0,1\n0,1,1\n1,1,1\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("a.csv", b"", "a header of names and rows"),
+        ("a.csv", b"\n\n", "a header of names and rows"),
+        ("a.csv", b"x,y,T\n", "a header of names and rows"),
+        ("a.csv", ("x,y,T,T\n" + ROWS.replace("1\n", "1,2\n")).encode(), "two columns 'T'"),
+        ("a.csv", ("x,y,T\n" + ROWS).replace(",", ";").encode(), "parted by commas, not by ';'"),
+        ("a.csv", ("x,y,T\n" + ROWS).replace(",", "\t").encode(), "parted by commas"),
+        ("a.csv", ("x,y,T,\xb0\n" + ROWS).encode("latin-1"), r"a\.csv:1: the file is not UTF-8"),
+        ("a.csv", ("x,y,T\n" + ROWS).encode("utf-16"), "not UTF-8"),
+        ("a.json", b'{"points": [[0, 0]], "T": [1], "T": [2]}', "says 'T' twice"),
+        ("a.json", b'{"T": "\xff"}', r"a\.json:1: the file is not UTF-8"),
+        ("a.vtu", b"<VTKFile>", "cannot be read as a mesh"),
+    ],
+)
+@pytest.mark.filterwarnings("error")
+def test_files_that_say_nothing_or_two_things_are_refused(tmp_path, name, content, message):
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(AnswerError, match=message) as caught:
+        read(path, [T])
+    assert "\n" not in str(caught.value)
+    assert str(path) in str(caught.value)
+
+
+def test_blank_lines_and_other_ends_of_lines_are_no_rows(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_bytes(("\ufeff\nx,y,T\n\n" + ROWS + "\n\n").replace("\n", "\r\n").encode())
+    assert np.array_equal(read(path, [T]).values["temperature"], np.ones(4))

@@ -85,3 +85,45 @@ def test_what_an_answer_does_not_reach_is_refused():
     line = np.column_stack([np.linspace(-1, 1, 30), np.zeros(30)])
     with pytest.raises(AnswerError, match="lie on a line"):
         carry(Answer("mine", {"T": line[:, 0]}, line), target(np.array([[0.01, 0.0]])), 0.1)
+
+
+@given(st.sampled_from([1e3, 1e2 * 1.5, 25.4 * 100]), st.booleans(), st.integers(0, 99))
+@settings(max_examples=20, deadline=None)
+def test_millimetres_are_no_metres(factor, meshed, seed):
+    """Twelve far points make a smooth guess of anything: nothing is taken from another unit."""
+    points = np.random.default_rng(seed).uniform(-1, 1, (200, 2))
+    triangles = Delaunay(points).simplices.astype(np.int64) if meshed else None
+    answer = Answer("mine", {"T": points[:, 0]}, factor * points, triangles)
+    with pytest.raises(AnswerError, match="are they in metres"):
+        carry(answer, target(WANTED), 0.1)
+
+
+@given(st.integers(0, 2**32 - 1), st.floats(1e-3, 10.0), st.booleans())
+@settings(max_examples=20, deadline=None)
+def test_two_values_at_one_place_are_refused(seed, change, there):
+    rng = np.random.default_rng(seed)
+    points = grid(6)
+    values = rng.uniform(1.0, 2.0, len(points))
+    twice = int(rng.integers(len(points)))
+    order = rng.permutation(len(points) + 1)
+    many = np.vstack([points, points[twice]])[order]
+    wanted = target(points if there else 0.9 * points + 0.01)
+    same = Answer("mine", {"T": np.append(values, values[twice])[order]}, many)
+    carry(same, wanted, 0.1)
+    other = Answer("mine", {"T": np.append(values, values[twice] + change)[order]}, many)
+    with pytest.raises(AnswerError, match="two values at"):
+        carry(other, wanted, 0.1)
+
+
+def test_both_faces_of_a_slit_have_their_own_value():
+    points = np.array(
+        [[-1.0, 0], [0, 0], [1, 0], [-1, 1], [1, 1], [-1, -1], [1, -1], [-1, 0], [0, 0]]
+    )
+    above = [[3, 0, 1], [3, 1, 4], [4, 1, 2]]
+    below = [[5, 8, 7], [5, 6, 8], [6, 2, 8]]
+    values = np.array([1.0, 1, 0, 1, 1, -1, -1, -1, -1])
+    answer = Answer("mine", {"T": values}, points, np.array(above + below))
+    wanted = np.array([[-0.5, 0.2], [-0.5, -0.2]])
+    assert carry(answer, target(wanted), 0.1) == pytest.approx([1.0, -1.0])
+    with pytest.raises(AnswerError, match="two values at"):
+        carry(answer, target(np.array([[-1.0, 0.0]])), 0.1)

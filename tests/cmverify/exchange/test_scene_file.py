@@ -445,3 +445,37 @@ def test_the_first_shape_begins_the_region(tmp_path):
     text = SMALL.replace('shape = "disc"', 'shape = "disc"\noperation = "subtract"')
     with pytest.raises(SceneFileError, match="nothing to subtract from"):
         scene_file.read(written(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("table", "place"),
+    [
+        ("[modes]\ncount = 100000\n", r":20: \[modes\]"),
+        ('[joule]\nplus = "x > 9"\nminus = "x < -0.8"\nsink = "x > 0.8"\nvoltage = 1\n'
+         "resistivities = [1, 1]\nconductivities = [1, 1]\nexpansions = [0, 0]\n",
+         r":20: \[joule\]"),
+    ],
+)  # fmt: skip
+def test_what_an_analysis_says_is_about_its_table(tmp_path, table, place):
+    text = """[discretisation]
+spacing = 0.25
+m = 2
+surface = "volume"
+[region]
+shape = "rectangle"
+width = 2.0
+height = 1.0
+
+[material]
+kind = "isotropic"
+E = 1.0
+nu = 0.2
+density = 1.0
+[[support]]
+where = "x < -0.5"
+displacement = [0, 0]
+rotation = 0
+
+"""
+    with pytest.raises(SceneFileError, match=place):
+        scene_file.request(written(tmp_path, text + table)).run()

@@ -97,6 +97,20 @@ def test_bad_polygons(vertices):
         polygon(vertices)
 
 
+@given(st.integers(0, 2**32 - 1), st.integers(3, 9))
+def test_vertices_that_are_said_again_are_one(seed, count):
+    """A side without length would have no normal: outlines are those of the ring without it."""
+    rng = np.random.default_rng(seed)
+    angle = np.sort(rng.uniform(0, 2 * np.pi, count)) + 1e-3 * np.arange(count)
+    ring = [(float(np.cos(a)), float(np.sin(a))) for a in angle]
+    again = [p for p in ring for _ in range(int(rng.integers(1, 4)))]
+    closed = [*again, again[0]] if rng.uniform() < 0.5 else again
+    one, other = polygon(ring), polygon(closed)
+    assert set(other.vertices) == set(ring)
+    assert len(other.vertices) == count
+    assert other.shape.equals(one.shape)
+
+
 @pytest.mark.parametrize("radius", [0.0, -1.0, np.nan, np.inf])
 def test_bad_discs(radius):
     with pytest.raises(ValueError, match="positive radius"):
