@@ -11,9 +11,9 @@ from scipy.optimize import linear_sum_assignment
 if TYPE_CHECKING:
     from solver.arrays import Array, Mask
 
-#: Frequencies that are nearer than this to each other (relative) are one group: their shapes may be
-#: any mixture, whatever computes them.
-_GROUP = 0.02
+#: Frequencies that lie no farther than this from one (relative) are its group: their shapes may be
+#: any mixture, whatever computes them. Farther ones are told apart, however many lie in between.
+_GROUP = 0.01
 #: A shape of which this share lies in another computation's group is the same one.
 _ALIKE = 0.7
 
@@ -64,21 +64,20 @@ def paired(own: Array, shapes: Array, frequencies: Array, others: Array, weight:
     a = a / size[:, None]
     b = b / np.linalg.norm(b, axis=1)[:, None]
     near = (a @ b.T) ** 2
-    group = np.concatenate([[0], np.cumsum(np.diff(frequencies) > _GROUP * frequencies[1:])])
-    together = np.stack([near[:, group == g].sum(axis=1) for g in range(group[-1] + 1)], axis=1)
+    group = np.abs(frequencies[:, None] - frequencies) <= _GROUP * frequencies[:, None]
+    together = near @ group.T
     # Within a group any assignment is as good; the frequency decides.
     distance = np.abs(np.log(own[:, None] / frequencies))
-    gain = together[:, group] - 1e-3 * np.minimum(distance, 1.0)
+    gain = together - 1e-3 * np.minimum(distance, 1.0)
     mine, theirs = linear_sum_assignment(-gain)
     found = np.full(len(own), np.nan)
     share, mixed = np.zeros(len(own)), np.full(shapes.shape, np.nan)
     for k, j in zip(mine, theirs, strict=True):
-        share[k] = together[k, group[j]]
+        share[k] = together[k, j]
         if share[k] < _ALIKE:
             continue
         found[k] = frequencies[j]
-        members = np.flatnonzero(group == group[j])
-        basis = np.linalg.qr(b[members].T)[0]
+        basis = np.linalg.qr(b[group[j]].T)[0]
         part = basis @ (basis.T @ a[k])
         part *= size[k] / np.linalg.norm(part)
         with np.errstate(divide="ignore", invalid="ignore"):

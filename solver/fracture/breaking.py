@@ -172,6 +172,8 @@ class Breakable:
         # What utilisation counts of each bond: nothing of those that must not break.
         self._weakness = np.where(self.kept, 0.0, self.whole / self.thickness)
         self._out = np.empty_like(self.whole)
+        #: How often utilisation was asked for: its last answer is overwritten.
+        self.asked = 0
         self._grids = np.zeros((2, 3, int(np.prod(lattice.shape))))
 
     def _kept(self, discretisation: Discretisation, no_fail: tuple[Where, ...]) -> Mask:
@@ -222,6 +224,7 @@ class Breakable:
         """
         grid = self._grid(0, unknowns)
         self._follow()
+        self.asked += 1
         rest = self._load, self._weakness, self.tension_only, self._out
         if self.rich:
             bond_kernels.rich_energies(grid, self.free, self._segments, self._steps, *rest)
@@ -273,13 +276,6 @@ class Breakable:
         """These particles as the kernels read them."""
         cell, size, first = segments.runs(self.lattice, particles, np.zeros_like(particles))
         return np.column_stack([cell, size, particles[first]]).astype(np.uint64)
-
-    def loads(self, bonds: Indices) -> Array:
-        """n1, n2, |ξ|/(2 Δx) of bonds and what squares of stretch and shear count, (5, n)."""
-        self._follow()
-        found = self._load[bonds // self.lattice.count, :5].T.copy()
-        found[3:] *= self._weakness.ravel()[bonds]
-        return found
 
     def energy_of(self, unknowns: Array, bonds: Indices) -> Array:
         """Energy that single bonds hold, J per unit thickness; `bonds` are flat indices."""

@@ -7,7 +7,6 @@ up to date (only what feels the broken bonds) when iterations tell that it does 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from time import perf_counter, process_time
@@ -31,7 +30,6 @@ from ..problem.rigid import unheld
 from ..solution import Solution, Statistics
 from .broken import BrokenBonds
 from .crack_path import initial_tips
-from .decision import Decision
 
 # Iterations above those that a fresh preconditioner would have taken after which it is brought up
 # to date.
@@ -153,12 +151,13 @@ class Equilibrium:
     def unknowns(self) -> Array:
         """Values of all unknowns at unit load, shape (components, N), NaN where set aside.
 
-        Not to be changed: the same array until the next solve.
+        The same array until the next solve, and read-only.
         """
         known = self._known
         # Each solve, and whoever sets particles aside, makes a new x.
         if known is None or known[0] is not self.x:
             known = self._known = self.x, self.discretisation().field(self.x)
+            known[1].flags.writeable = False
         return known[1]
 
     def discretisation(self, factor: float = 1.0) -> Discretisation:
@@ -399,15 +398,13 @@ class Equilibrium:
 
     # ---- solving ------------------------------------------------------------------------
 
-    def solve(self, tolerance: float | None = None, decision: Decision | None = None) -> Step:
+    def solve(self, tolerance: float | None = None) -> Step:
         """Solve for the present bonds, from the last solution.
 
         Parameters
         ----------
         tolerance : float, optional
             A coarser one than that of the body.
-        decision : Decision, optional
-            When it is made nothing more is asked for.
 
         Raises
         ------
@@ -435,8 +432,7 @@ class Equilibrium:
             left = rhs - system.matvec(before)
             refreshed = self._prepare()
             guess, start = self._guess(before, left)
-            asked = self._asked(decision, guess)
-            task = Task(rhs, guess, tolerance, self.max_iterations, start, asked)
+            task = Task(rhs, guess, tolerance, self.max_iterations, start)
             inverse = self._inverse()
             after_x, iterations = method.iterate(operator, self.kind, inverse, task, self.border)
             right = rhs - system.matvec(after_x)
@@ -450,8 +446,6 @@ class Equilibrium:
             self.worn = bool(iterations > self.pace * decades + _PATIENCE)
             self.iterations += iterations
             self.residual, self.seconds = residual, self.seconds + perf_counter() - begun
-            if decision is not None and decision.made:
-                tolerance = np.inf
             if not residual <= max(tolerance, method.attainable(operator, after_x, rhs)):
                 raise ConvergenceError(
                     f"equilibrium stopped at a relative residual of {residual:.2e} after "
@@ -460,22 +454,6 @@ class Equilibrium:
             released = 0.5 * float((after_x - before) @ (left + right))
             self.x, self.masters = np.split(after_x, [operator.shape[0]])
         return Step(iterations, refreshed, released * self.sound.family.cell_area)
-
-    def _asked(self, decision: Decision | None, guess: Array) -> Callable[[Array], bool] | None:
-        """The question to put to every iterate, put to the first guess."""
-        if decision is None or self.border is not None:
-            return None
-        active = self.operator.active
-        at = np.minimum(np.searchsorted(active, decision.particles), len(active) - 1)
-        free = active[at] == decision.particles
-        values = self.sound.values[:, decision.particles]
-
-        def enough(x: Array) -> bool:
-            values[:, free] = x.reshape(len(values), -1)[:, at[free]]
-            return decision(values)
-
-        enough(guess)
-        return enough
 
     def _guess(self, before: Array, left: Array) -> tuple[Array, Array]:
         """Where to begin and what residual that leaves, from the last answer and its residual.

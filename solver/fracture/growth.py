@@ -23,7 +23,6 @@ from . import crack_path
 from .breaking import TIE, Breakable, Criterion, Critical, next_batch
 from .crack_path import CrackPath
 from .damaged_body import Equilibrium, Step
-from .decision import Decision
 from .ledger import History, Ledger, same
 from .programme import Programme
 
@@ -85,7 +84,7 @@ class Growth(Result):
         self.solves: list[tuple[int, int, bool]] = []
         self._starts = crack_path.initial_tips(scene.cracks, scene.region)
         # Utilisation, and of which answer with how many bonds gone.
-        self._judged: tuple[tuple[Array, Array, int], Array] | None = None
+        self._judged: tuple[tuple[Array, Array, int], int, Array] | None = None
         self._paths: tuple[int, list[CrackPath]] = (-1, [])
 
     # ---- what has happened ----------------------------------------------------------------
@@ -264,11 +263,25 @@ class Growth(Result):
         self.ledger.opened()
         self.ledger.move(0.0, self.load_factor)
         self.record()
+        self.reason = self._idle()
+
+    def _idle(self) -> str:
+        """Why no load factor will ever break a bond, if so: known from the first equilibrium."""
         if self.ledger.unstrained and self.body.unknowns.any():
-            self.reason = (
+            return (
                 "the load moves the body and does not strain it: the parts that it moves are not "
                 "joined (a crack runs right through?), or move as one"
             )
+        return ""
+
+    def finish(self) -> None:
+        """Bring an equilibrium in the middle of an avalanche to the tolerance of those at rest."""
+        if self.precise:
+            return
+        step, (broken, iterations, refreshed) = self._equilibrium(), self.solves[-1]
+        self.precise = True
+        self.solves[-1] = (broken, iterations + step.iterations, refreshed or step.refreshed)
+        self.ledger.solved(step, self.load_factor)
 
     def proceed(self) -> None:
         """On to the next equilibrium: a batch of bonds breaks, or the load changes."""
@@ -281,7 +294,7 @@ class Growth(Result):
         batch, _ = next_batch(utilisation, least, self.batch)
         if len(batch):
             self.resting = False
-            self._break(batch, utilisation, least)
+            self._break(batch)
         elif not self.precise:
             self._solve(0)
         elif not self.resting:
@@ -293,11 +306,15 @@ class Growth(Result):
             self._load(float(utilisation.max(initial=0.0)))
 
     def _utilisation(self) -> Array:
-        """Of all bonds in the present equilibrium: asked for at its end and for the next batch."""
-        state = self.body.unknowns, self.bonds.free, len(self.bonds.broken)
-        if self._judged is None or not same(self._judged[0], state):
-            self._judged = state, self.bonds.utilisation(state[0])
-        return self._judged[1]
+        """Of all bonds in the present equilibrium: asked for at its end and for the next batch.
+
+        Who looks on may have asked for that of another field in between.
+        """
+        state, known = (self.body.unknowns, self.bonds.free, len(self.bonds.broken)), self._judged
+        if known is None or known[1] != self.bonds.asked or not same(known[0], state):
+            found = self.bonds.utilisation(state[0])
+            known = self._judged = state, self.bonds.asked, found
+        return known[2]
 
     def _ended(self) -> bool:
         """Whether nothing is left to do at a state of rest; says so in `reason`."""
@@ -361,7 +378,7 @@ class Growth(Result):
         if self._ended():
             return
         self.resting = False
-        self._break(batch, utilisation)
+        self._break(batch)
 
     def _event(self, largest: float) -> float:
         """Load factor of the next event; infinite if bonds bear nothing but the solver's noise."""
@@ -376,43 +393,26 @@ class Growth(Result):
         self.ledger.move(self.load_factor, factor)
         self.load_factor = factor
 
-    def _break(self, batch: Indices, utilisation: Array, least: float | None = None) -> None:
-        """Break bonds, and on to the next equilibrium.
-
-        If bonds break from a utilisation of `least` on, whatever they do to the others, it is
-        enough to tell overloaded bonds from others.
-        """
+    def _break(self, batch: Indices) -> None:
+        """Break bonds, and on to the next equilibrium."""
         self.ledger.broken(batch, self.load_factor)
         self._remove(batch, dropped=False)
         self._set_aside(self.body.slack())
-        if least is None:
-            self._solve(len(batch))
-            return
-        tolerance = max(_ROUGH, self.body.tolerance)
-        decision = None
-        if not self.bonds.rich:
-            decision = Decision(self.bonds, utilisation, least, self.batch)
-        self._solve(len(batch), tolerance, decision)
-        if decision is not None and decision.made and not decision.saw(self._utilisation()):
-            self._solve(0, tolerance)
+        # Within an avalanche it is enough to tell overloaded bonds from others.
+        rough = self.programme.control == "fixed"
+        self._solve(len(batch), max(_ROUGH, self.body.tolerance) if rough else None)
 
-    def _solve(
-        self, broken: int, tolerance: float | None = None, decision: Decision | None = None
-    ) -> None:
+    def _solve(self, broken: int, tolerance: float | None = None) -> None:
         """Equilibrium after `broken` bonds broke, to a coarser `tolerance` if one is given."""
-        step = self._equilibrium(tolerance, decision)
+        step = self._equilibrium(tolerance)
         self.precise = tolerance is None or tolerance <= self.body.tolerance
-        if decision is not None and decision.made:
-            self.precise = False
         self.solves.append((broken, step.iterations, step.refreshed))
         self.ledger.solved(step, self.load_factor)
 
-    def _equilibrium(
-        self, tolerance: float | None = None, decision: Decision | None = None
-    ) -> Step:
+    def _equilibrium(self, tolerance: float | None = None) -> Step:
         """A new one; a part that moves freely is set aside."""
         try:
-            return self.body.solve(tolerance, decision)
+            return self.body.solve(tolerance)
         except (ConvergenceError, NegativeCurvatureError):
             particles = self.body.fragments()
             if not len(particles):

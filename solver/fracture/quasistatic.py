@@ -79,7 +79,8 @@ def grow(
         a result was found with. A load that follows the crack must overload all of a batch and is
         the higher for larger ones.
     tolerance : float
-        Relative residual of every equilibrium.
+        Relative residual of every equilibrium at rest and of the last one; 1e-6 serves within an
+        avalanche, where all that is asked is which bonds are overloaded.
     max_iterations : int
         Of one solve.
     max_solves : int, optional
@@ -96,7 +97,6 @@ def grow(
         Solves between two checkpoints.
     listen : callable, optional
         Called with the `Growth` before every batch; it decides nothing.
-
     temperatures : Temperatures, optional
         Fields that the body goes through instead of a programme; the scene's supports and loads
         act in full. The run ends with the last one.
@@ -165,15 +165,19 @@ def grow(
         if checkpoint is not None and (asked or len(run.solves) >= saved + every):
             saved = len(run.solves)
             state_file.save(run, checkpoint, mark)
+        try:
+            if asked:
+                # After the checkpoint: a run that goes on does not know that it was interrupted.
+                run.finish()
+            else:
+                run.proceed()
+        except MechanismError as error:
+            run.reason = str(error)
         if asked:
-            run.reason = asked
+            run.reason = run.reason or asked
             if not run.resting:
                 run.record()
             return run
-        try:
-            run.proceed()
-        except MechanismError as error:
-            run.reason = str(error)
     if checkpoint is not None:
         state_file.save(run, checkpoint, mark)
     return run

@@ -113,8 +113,10 @@ def run(
         Negative for a quench. The body is free of strain before it.
     times : sequence of float, s
         At which bonds may break, ascending from above 0; the last one ends the run.
-    conductivities, expansions : pair of float
-        Principal ones along common axes: W/(m K), 1/K (in plane strain the effective ones).
+    conductivities : pair of float, W/(m K)
+        Principal ones, along the axes that `angle_degrees` turns.
+    expansions : pair of float, 1/K
+        Principal ones along the same axes (in plane strain the effective ones).
     heat_capacity : float, J/(m³ K)
     angle_degrees : float
         Turn of these axes, anticlockwise.
@@ -140,8 +142,12 @@ def run(
     require_whole_bonds(scene)
     if not (isfinite(change) and change != 0):
         raise SceneError(f"a quench changes the temperature of the surface, not by {change} K")
-    if not all(k > 0 for k in conductivities):
-        raise SceneError(f"conductivities must be positive, not {conductivities}")
+    if not all(isfinite(k) and k > 0 for k in conductivities):
+        raise SceneError(f"conductivities must be positive and finite, not {conductivities}")
+    if not all(map(isfinite, expansions)):
+        raise SceneError(f"coefficients of expansion must be finite, not {expansions}")
+    if not all(t > 0 for t in times):
+        raise SceneError("the surface changes its temperature at time 0: times must be after it")
     angle = radians(angle_degrees)
     turn = np.array([[cos(angle), -sin(angle)], [sin(angle), cos(angle)]])
     conductor = replace(

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
-from ..errors import SceneError
+from ..errors import MechanismError, SceneError
 from ..geometry import Where
 from ..material import ExpansionTensor
 from ..operators.eigenstrain import Eigenstrain
@@ -121,6 +121,8 @@ class Tempered(Growth):
         max_iterations: int,
         monitors: Mapping[str, Callable[[Growth], float]],
     ) -> None:
+        if "time" in monitors:
+            raise SceneError("the history of a body that cools has its own column 'time'")
         if any(load.strain is not None for load in scene.loads):
             raise SceneError(
                 "the scene has a temperature of its own beside those that change: give one"
@@ -157,6 +159,14 @@ class Tempered(Growth):
         self.body.warm(self.temperatures.strained(warm, self.target))
         self.bonds.free = free_strains(self.body.sound)
 
+    def _idle(self) -> str:
+        """Nothing: what does not strain the body yet may do so at another time."""
+        return ""
+
+    def _ended(self) -> bool:
+        """Only with the last temperatures: a body without stress now may bear some later."""
+        return False
+
     def _load(self, largest: float) -> None:
         """On to the next temperatures."""
         if self.target + 1 == len(self.temperatures.times):
@@ -169,7 +179,15 @@ class Tempered(Growth):
         now, self.bonds.free = self.bonds.free, free
         done = self.bonds.expansion_work(before, change)
         self.bonds.free = now
+        gone = len(self.bonds.broken)
         step = self._equilibrium()
+        if len(self.bonds.broken) != gone:
+            # A part that nothing holds any more was set aside, with its bonds: what these took of
+            # the way here is not known.
+            raise MechanismError(
+                f"a part of the body is held by nothing at time {self.time:g}: it turns about a "
+                "point when its temperature changes"
+            )
         self.solves.append((0, step.iterations, step.refreshed))
         done += self.bonds.expansion_work(self.body.unknowns, change)
         self.ledger.warmed(0.5 * done)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,9 +30,6 @@ class Task:
         Largest number of iterations, restarts included.
     residual : ndarray, optional
         rhs − K guess, where it is known.
-    enough : callable, optional
-        Asked about every iterate of `conjugate_gradients`; they end, whatever is left, when it
-        says yes.
     """
 
     rhs: Array
@@ -41,10 +37,9 @@ class Task:
     tolerance: float
     limit: int
     residual: Array | None = None
-    enough: Callable[[Array], bool] | None = None
 
 
-class Guarded(LinearOperator):
+class _Guarded(LinearOperator):
     """The operator, watching for directions of non-positive energy."""
 
     def __init__(self, operator: LinearOperator) -> None:
@@ -63,25 +58,14 @@ class Guarded(LinearOperator):
         return y
 
 
-class _Enough(Exception):
-    """Ends SciPy's iterations from within its callback."""
+class _Counter:
+    """Counts iterations as SciPy's callback."""
 
+    def __init__(self) -> None:
+        self.count = 0
 
-class _Watch:
-    """SciPy's callback: counts iterations and asks whether they are enough."""
-
-    def __init__(self, enough: Callable[[Array], bool] | None) -> None:
-        self.count, self.enough = 0, enough
-        #: What iterates are added to, and their sum.
-        self.start: Array = np.zeros(0)
-        self.reached: Array = self.start
-
-    def __call__(self, step: Array) -> None:
+    def __call__(self, _: Array) -> None:
         self.count += 1
-        if self.enough is not None:
-            self.reached = self.start + step
-            if self.enough(self.reached):
-                raise _Enough
 
 
 def conjugate_gradients(
@@ -94,7 +78,7 @@ def conjugate_gradients(
     NegativeCurvatureError
         If the operator turns out not to be positive.
     """
-    guarded, counter = Guarded(operator), _Watch(task.enough)
+    guarded, counter = _Guarded(operator), _Counter()
     x, size = task.guess.copy(), float(np.linalg.norm(task.rhs))
     for number in range(_RESTARTS):
         # Solve for the correction: its residual is small, so nothing is lost to cancellation.
@@ -105,19 +89,9 @@ def conjugate_gradients(
         if share <= task.tolerance or left <= 0:
             break
         rtol = 0.5 * task.tolerance / share
-        counter.start = x
-        try:
-            step, _info = cg(
-                guarded,
-                defect,
-                rtol=rtol,
-                atol=0.0,
-                maxiter=left,
-                M=preconditioner,
-                callback=counter,
-            )
-        except _Enough:
-            return counter.reached, counter.count
+        step, _info = cg(
+            guarded, defect, rtol=rtol, atol=0.0, maxiter=left, M=preconditioner, callback=counter
+        )
         x = x + step
     return x, counter.count
 

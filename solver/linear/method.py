@@ -15,7 +15,6 @@ thread. The kernels themselves do not depend on theirs.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Literal, get_args
 
@@ -108,10 +107,7 @@ def iterate(
         # Products of what is left of it would leave the range of numbers. A power of two is exact.
         unit = 2.0 ** np.floor(np.log2(size))
         left = None if task.residual is None else task.residual / unit
-        enough = None if task.enough is None else _of_unit(task.enough, unit)
-        scaled = replace(
-            task, rhs=task.rhs / unit, guess=task.guess / unit, residual=left, enough=enough
-        )
+        scaled = replace(task, rhs=task.rhs / unit, guess=task.guess / unit, residual=left)
         x, count = iterate(operator, kind, preconditioner, scaled, border)
         return x * unit, count
     if border is not None:
@@ -119,10 +115,6 @@ def iterate(
     if kind == "indefinite":
         return condensed_gradients(operator, preconditioner, task)
     return conjugate_gradients(operator, preconditioner, task)
-
-
-def _of_unit(enough: Callable[[Array], bool], unit: float) -> Callable[[Array], bool]:
-    return lambda x: enough(x * unit)
 
 
 def name(kind: str, preconditioner: LinearOperator | None) -> str:

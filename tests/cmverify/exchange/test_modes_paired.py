@@ -45,3 +45,16 @@ def test_what_is_not_there_is_not_paired():
     np.testing.assert_array_equal(found.alike, [True, False, True])
     assert np.isnan(found.frequencies[1])
     np.testing.assert_array_equal(found.frequencies[[0, 2]], [1.0, 3.0])
+
+
+def test_a_dense_spectrum_is_no_single_group():
+    """Neighbours within a per cent, thirty of them over a third: a mixture of all is not alike."""
+    rng = np.random.default_rng(1)
+    shapes, weight = some(rng, 30, 40)
+    frequencies = 548.0 * 1.012 ** np.arange(30.0)
+    turn = np.linalg.qr(rng.standard_normal((30, 30)))[0]
+    mixed = np.tensordot(turn, shapes, axes=1)
+    assert not paired(frequencies, shapes, frequencies, mixed, weight).alike.any()
+    closer = 548.0 * 1.008 ** np.arange(30.0)
+    assert paired(closer, shapes, closer, mixed, weight).alike.sum() <= 1
+    assert paired(closer, shapes, closer, shapes, weight).alike.all()

@@ -53,6 +53,9 @@ def test_what_makes_no_run_is_refused():
     for name, value, says in (
         ("change", 0.0, "changes the temperature"),
         ("conductivities", (1.0, 0.0), "must be positive"),
+        ("conductivities", (np.inf, 1.0), "positive and finite"),
+        ("expansions", (np.inf, 1.0), "expansion must be finite"),
+        ("times", [0.0, 1.0], "must be after it"),
         ("cooled", lambda x, y: y < -9, "edge|surface|node"),
         ("times", [], "time"),
     ):

@@ -82,6 +82,23 @@ def test_linear_temperatures_of_a_free_body_break_nothing():
     changes = [1.0 + X - 2 * Y, -3.0 * Y, 0.0 * X]
     run = fracture.grow(free, 1e-6, temperatures=Temperatures([1.0, 2.0, 3.0], changes, EXPANSION))
     assert not len(run.broken_bonds)
+    assert run.reason == "the last temperatures are reached"
+    assert run.history["time"][-1] == 3.0
+
+
+@pytest.mark.parametrize("begin", [0.0 * X, 1.0 + 0.0 * X, 1.0 + X - 2 * Y])
+def test_what_strains_no_body_yet_may_break_it_later(begin):
+    corner = [
+        Support.where(lambda x, y: (x < 1) & (y < 1), displacement=(0.0, 0.0)),
+        Support.where(lambda x, y: (x > 6) & (x < 7) & (y < 1), u2=0.0),
+    ]
+    free = Scene(PLATE.region, 1.0, SOFT, corner, m=2)
+    changes = [begin, -np.exp(-Y / 2.0)]
+    run = fracture.grow(free, 0.01, temperatures=Temperatures([1.0, 2.0], changes, EXPANSION))
+    assert run.history["time"][-1] == 2.0
+    assert len(run.broken_bonds)
+    alone = fracture.grow(free, 0.01, temperatures=Temperatures([2.0], changes[1:], EXPANSION))
+    np.testing.assert_array_equal(run.broken_bonds, alone.broken_bonds)
 
 
 def test_a_run_goes_on_from_its_checkpoint(tmp_path):
@@ -124,6 +141,8 @@ def test_what_does_not_go_together_is_refused():
     ended = Scene(**{**vars(PLATE), "surface": "extrapolated"})
     with pytest.raises(SceneError, match="end at the surface cannot be broken under temperatures"):
         fracture.grow(ended, TOUGH, temperatures=given)
+    with pytest.raises(SceneError, match="its own column 'time'"):
+        fracture.grow(PLATE, TOUGH, temperatures=given, monitors={"time": lambda run: 0.0})
     short = Temperatures([1.0], fields(1)[:, :-1], EXPANSION)
     with pytest.raises(SceneError, match="temperature"):
         fracture.grow(PLATE, TOUGH, temperatures=short)
