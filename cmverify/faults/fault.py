@@ -24,7 +24,7 @@ KEPT = (
 
 Function = Callable[..., Any]
 #: Tables and keys under which something is known, by its identity.
-Places = dict[int, list[tuple[dict[Any, Any], Any]]]
+_Places = dict[int, list[tuple[dict[Any, Any], Any]]]
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ def find(target: str) -> tuple[Any, str]:
 
 @contextmanager
 def _replaced(
-    target: str, change: Callable[[Function], Function] | None, calls: Calls, known: Places
+    target: str, change: Callable[[Function], Function] | None, calls: Calls, known: _Places
 ) -> Iterator[None]:
     owner, name = find(target)
     right = vars(owner)[name]
@@ -170,9 +170,9 @@ def _replaced(
             table[key] = right
 
 
-def _places() -> Places:
+def _places() -> _Places:
     """Where every function is known by a name, in modules and in their tables, by its identity."""
-    found: Places = {}
+    found: _Places = {}
     for module in _modules():
         names = vars(module)
         # Every module holds Python's own functions too.
