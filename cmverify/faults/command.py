@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from cmverify.case import Level
 from cmverify.console import refuse
 
 if TYPE_CHECKING:
@@ -34,11 +35,14 @@ def faults(
     seconds: Annotated[
         float, typer.Option(help="With --remember: for a second case, a fault.", min=0.0)
     ] = 30.0,
+    level: Annotated[
+        Level, typer.Option("--level", help="At which cases are measured; standard takes hours.")
+    ] = Level.QUICK,
     jobs: Annotated[int, typer.Option(help="Worker processes; 0 for one a core.")] = 0,
     out: Annotated[Path, typer.Option("--out", help="Folder of the page.")] = Path("report"),
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the page.")] = False,
 ) -> None:
-    """Put faults into solver, references and judges, and see which cases fail at level quick.
+    """Put faults into solver, references and judges, and see which cases fail.
 
     Exit code 0 only if every fault is caught by a case, or argued to be harmless.
     """
@@ -49,6 +53,8 @@ def faults(
 
     if every and once:
         refuse("--once asks for one case a fault, --all for all of them: give one")
+    if remember and level is not Level.QUICK:
+        refuse("--remember keeps what level quick catches: leave --level out")
     known = registry.all_faults()
     wanted = set(names or ())
     strange = wanted - {f.name for f in known} - {f.kind for f in known}
@@ -72,10 +78,11 @@ def faults(
             enough=10_000 if every else 1 if once else trial.ENOUGH,
             seconds=seconds if remember else 0.0,
             listen=lambda what, done, total: status.update(f"{done} of {total}: {what}"),
+            level=level,
         )
     if remember:
         table.write_map(results)
-    path = page.write(results, _command(names, every, once, out), out, once)
+    path = page.write(results, _command(names, every, once, level, out), out, once)
     _print(screen, results, once)
     screen.print(f"Page: {path}", soft_wrap=True)
     raise typer.Exit(0 if all(r.good for r in results) else 1)
@@ -106,7 +113,8 @@ def _who(result: Result) -> str:
     return ", ".join(result.cases[:3]) + (f" and {more} more" if more > 0 else "")
 
 
-def _command(names: list[str] | None, every: bool, once: bool, out: Path) -> str:
+def _command(names: list[str] | None, every: bool, once: bool, level: Level, out: Path) -> str:
     parts = ["cmverify faults", *(f'"{n}"' for n in names or [])]
     parts += ["--all"] if every else ["--once"] if once else []
+    parts += [] if level is Level.QUICK else [f"--level {level.value}"]
     return " ".join([*parts, f"--out {out}"])

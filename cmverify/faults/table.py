@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
+from cmverify.case import Level
 from cmverify.faults import trial
 from cmverify.faults.fault import Fault
 from cmverify.faults.trial import Found, Pair, Sound
@@ -60,6 +61,7 @@ def attempt(
     enough: int = trial.ENOUGH,
     seconds: float = 0.0,
     listen: Callable[[str, int, int], None] = lambda what, done, total: None,
+    level: Level = Level.QUICK,
 ) -> list[Result]:
     """Try faults, first where the map says, then wherever a target is called.
 
@@ -75,8 +77,10 @@ def attempt(
         What may be spent on finding so many cases for a fault that fewer of the map catch.
     listen : callable
         Told what is being done, and how much of it.
+    level : Level
+        At which cases are measured; the map is that of level quick.
     """
-    there = set(trial.pairs())
+    there = set(trial.pairs(level))
     plans = {f.name: [p for p in known.get(f.name, ()) if p in there] for f in chosen}
     results = {f.name: Result(f, ()) for f in chosen}
     with child_environment(thread_environment(1)), workers(jobs) as pool:
@@ -86,7 +90,7 @@ def attempt(
             waiting = {
                 pool.submit(
                     trial.search, f.name, [(p, sound[p]) for p in plans[f.name]],
-                    enough, spend, before[f.name],
+                    enough, spend, before[f.name], level,
                 ): f
                 for f in faults
             }  # fmt: skip
@@ -95,7 +99,9 @@ def attempt(
                 results[fault.name] = Result(fault, tuple(future.result()))
                 listen(fault.name, done, len(waiting))
 
-        sound = _sound(pool, sorted({p for plan in plans.values() for p in plan}), {}, listen)
+        sound = _sound(
+            pool, sorted({p for plan in plans.values() for p in plan}), {}, listen, level
+        )
         search([f for f in chosen if plans[f.name]], sound, math.inf)
         missed = [f for f in chosen if not results[f.name].good]
         single = [
@@ -108,7 +114,7 @@ def attempt(
             and not f.harmless
         ]
         if missed or single:
-            sound = _sound(pool, sorted(there), sound, listen)
+            sound = _sound(pool, sorted(there), sound, listen, level)
             cheap = sorted(sound, key=lambda pair: sound[pair].seconds)
             for fault in (*missed, *single):
                 tried = {(f.case, f.method) for f in results[fault.name].found}
@@ -128,9 +134,10 @@ def _sound(
     wanted: Sequence[Pair],
     known: Mapping[Pair, Sound],
     listen: Callable[[str, int, int], None],
+    level: Level,
 ) -> dict[Pair, Sound]:
     found = dict(known)
-    waiting = {pool.submit(trial.sound, p): p for p in wanted if p not in found}
+    waiting = {pool.submit(trial.sound, p, level): p for p in wanted if p not in found}
     for done, future in enumerate(as_completed(waiting), 1):
         found[waiting[future]] = future.result()
         listen("without a fault", done, len(waiting))

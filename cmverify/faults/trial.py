@@ -1,7 +1,8 @@
 """Faults tried on cases: what a process does that is given a fault, or none.
 
-A trial is one method of one case at level quick. Without a fault it measures what is right and
-notes which targets are called and how long it takes; with one it is judged against that.
+A trial is one method of one case, at level quick if not said otherwise. Without a fault it measures
+what is right and notes which targets are called and how long it takes; with one it is judged
+against that.
 """
 
 from __future__ import annotations
@@ -21,8 +22,8 @@ from cmverify.judge.verdict import judge, not_finite
 from cmverify.run import worker
 
 JUDGES = "cmverify.judge."
-#: Seconds for a method, before a fault is taken to have made an iteration endless.
-PATIENCE = 120.0
+#: Seconds for one resolution, before a fault is taken to have made an iteration endless.
+PATIENCE = {Level.QUICK: 120.0, Level.STANDARD: 1800.0, Level.PAPER: 7200.0}
 #: Cases that have to catch a fault before no other is tried.
 ENOUGH = 2
 
@@ -59,20 +60,20 @@ class Found:
     called: bool
 
 
-def pairs() -> list[Pair]:
-    """Every method of every case that measures something at level quick."""
-    found = {(case.name, m.name) for case in cases.all_cases() for m, _ in case.plan(Level.QUICK)}
+def pairs(level: Level = Level.QUICK) -> list[Pair]:
+    """Every method of every case that measures something at a level."""
+    found = {(case.name, m.name) for case in cases.all_cases() for m, _ in case.plan(level)}
     return sorted(found)
 
 
-def sound(pair: Pair) -> Sound:
+def sound(pair: Pair, level: Level = Level.QUICK) -> Sound:
     """Measure without a fault, counting calls of every fault's target."""
     case = cases.get(pair[0])
     targets = dict.fromkeys(sorted({f.target for f in faults.all_faults()}))
     _warm(case, pair[1])
     begun = time.perf_counter()
     with applied(targets) as calls:
-        outcomes = _measure(case, pair[1])
+        outcomes = _measure(case, pair[1], level)
     called = frozenset(target for target, count in calls.of.items() if count)
     return Sound(outcomes, called, time.perf_counter() - begun)
 
@@ -83,6 +84,7 @@ def search(
     enough: int = ENOUGH,
     seconds: float = math.inf,
     found: Sequence[Found] = (),
+    level: Level = Level.QUICK,
 ) -> list[Found]:
     """Try a fault on methods one after the other until so many cases have caught it.
 
@@ -105,11 +107,11 @@ def search(
         # A second method of a case that has caught it says nothing new.
         if pair[0] not in catching:
             spent += before.seconds
-            found.append(attempt(fault, pair, before))
+            found.append(attempt(fault, pair, before, level))
     return found
 
 
-def attempt(fault: Fault, pair: Pair, before: Sound) -> Found:
+def attempt(fault: Fault, pair: Pair, before: Sound, level: Level = Level.QUICK) -> Found:
     """One method with a fault, held against the same without."""
     case = _alone(cases.get(pair[0]), pair[1])
     _warm(case, pair[1])
@@ -117,7 +119,7 @@ def attempt(fault: Fault, pair: Pair, before: Sound) -> Found:
     passed = {(v.quantity, v.where, v.kind) for v in right if v.passed}
     # Judges are judged too: what they say while they are wrong counts.
     with applied({fault.target: fault.change}) as calls:
-        outcomes = _measure(case, pair[1])
+        outcomes = _measure(case, pair[1], level)
         if fault.target.startswith(JUDGES):
             wrong = judge(case, {pair[1]: outcomes})
     if not fault.target.startswith(JUDGES):
@@ -166,11 +168,11 @@ def _warm(case: Case, method: str) -> None:
     worker.warm_up(case.method(method))
 
 
-def _measure(case: Case, method: str) -> dict[int, Outcome]:
+def _measure(case: Case, method: str, level: Level) -> dict[int, Outcome]:
     chosen = case.method(method)
     found: dict[int, Outcome] = {}
-    for n in chosen.resolutions.get(Level.QUICK, ()):
-        with _patience(PATIENCE):
+    for n in chosen.resolutions.get(level, ()):
+        with _patience(PATIENCE[level]):
             outcome = worker.attempt(chosen, n)
         if isinstance(outcome, Measurement) and not not_finite(outcome):
             # Fields were looked at for NaN; nobody draws them.

@@ -150,6 +150,27 @@ def test_the_page_says_what_is_caught_and_what_is_not(tmp_path):
     assert browser.dead_links(tmp_path / page.NAME) == []
 
 
+@pytest.mark.slow
+def test_other_levels_measure_their_own_resolutions():
+    name, pair = next(
+        (n, p)
+        for n, plan in table.read_map().items()
+        for p in plan
+        if p[0] == "deformational-heating"
+    )
+    before = trial.sound(pair, Level.STANDARD)
+    assert set(before.outcomes) == {6, 12}
+    found = trial.attempt(registry.get(name), pair, before, Level.STANDARD)
+    assert found.called
+    assert found.caught
+
+
+def test_the_map_is_of_level_quick():
+    found = CliRunner().invoke(app, ["faults", "--remember", "--level", "standard"])
+    assert found.exit_code == 2
+    assert "leave --level out" in found.output
+
+
 def test_an_unknown_fault_is_refused():
     found = CliRunner().invoke(app, ["faults", "no such fault"])
     assert found.exit_code == 2
