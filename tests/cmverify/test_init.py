@@ -65,7 +65,7 @@ def test_files_called_as_modules_of_python_do_not_stop_the_program(tmp_path):
     for name in ("random", "json", "signal", "numbers", "select", "solver"):
         (tmp_path / f"{name}.py").write_text("raise RuntimeError('not this one')\n")
     found = subprocess.run(
-        [sys.executable, "-m", "cmverify", "run", "toughness", "--jobs", "1"],
+        [sys.executable, "-m", "cmverify", "run", "yardsticks", "--jobs", "1"],
         cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)},
         capture_output=True, text=True, check=False,
     )  # fmt: skip
