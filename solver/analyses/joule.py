@@ -23,13 +23,14 @@ from ..arrays import Array, Mask
 from ..bonds import Cells
 from ..errors import SceneError
 from ..geometry import Lattice, Phases, Where
-from ..material import ConductivityTensor, ElectricConductivityTensor, ExpansionTensor
+from ..material import ElectricConductivityTensor, ExpansionTensor
 from ..material.physics import ELASTICITY
 from ..problem import Description, Discretisation, Load, Support
 from ..reactions import supply
 from ..result import Result
 from ..solution import Solution
 from ..state import State
+from . import solids
 from .registry import Analysis
 from .statics import solve
 
@@ -183,15 +184,12 @@ def run(
         material=ElectricConductivityTensor.of_resistivities(*resistivities, angle),
         supports=[Support.lead(plus, potential=voltage), Support.lead(minus, potential=0.0)],
     )
-    if not all(k > 0 for k in conductivities):
-        raise SceneError(f"conductivities must be positive, not {conductivities}")
+    conductor, expansion = solids.heated(conductivities, expansions, angle_degrees)
     thermal = replace(
         bare,
-        material=ConductivityTensor(np.diag(conductivities)).rotated(angle),
+        material=conductor,
         supports=[Support.where(sink, temperature=0.0)],
     )
-    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
-    expansion = ExpansionTensor(turn @ np.diag(expansions) @ turn.T)
     current = solve(Discretisation.of(electric, constrained=True), tolerance)
     heat = solve(Discretisation.of(heated(thermal, current), constrained=True), tolerance)
     warm = expanded(scene, heat, expansion)

@@ -15,7 +15,6 @@ and are in equilibrium. One factorisation serves all steps: bodies of some ten t
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import cos, radians, sin
 from numbers import Integral
 from typing import Annotated, Any
 
@@ -29,7 +28,7 @@ from ..blas import one_thread
 from ..bonds import Cells
 from ..errors import SceneError
 from ..geometry import Where
-from ..material import ConductivityTensor, ExpansionTensor
+from ..material import ExpansionTensor
 from ..material.physics import ELASTICITY
 from ..operators.assembled import to_csr
 from ..operators.eigenstrain import Eigenstrain
@@ -39,6 +38,7 @@ from ..problem import Description, Discretisation, Support
 from ..problem.values import Value, evaluate
 from ..result import Result, Table
 from ..state import State
+from . import solids
 from .registry import Analysis
 
 
@@ -357,23 +357,20 @@ def motion(
         raise SceneError(
             "tips of cracks are calibrated (tip='calibrated') in bodies that no temperature strains"
         )
-    if not all(k > 0 for k in conductivities):
-        raise SceneError(f"conductivities must be positive, not {conductivities}")
-    angle = radians(angle_degrees)
+    conductor, expansion = solids.heated(conductivities, expansions, angle_degrees)
     heat = replace(
         scene,
-        material=ConductivityTensor(np.diag(conductivities)).rotated(angle),
+        material=conductor,
         supports=[] if sink is None else [Support.where(sink, temperature=0.0)],
         loads=(),
         law=None,
         density=None,
         heat_capacity=heat_capacity,
     )
-    turn = np.array([[cos(angle), -sin(angle)], [sin(angle), cos(angle)]])
     return run(
         scene,
         heat,
-        ExpansionTensor(turn @ np.diag(expansions) @ turn.T),
+        expansion,
         reference,
         step=step,
         steps=steps,

@@ -9,26 +9,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import cos, isfinite, radians, sin
+from math import isfinite, radians
 from typing import Any
 
-import numpy as np
-
-from ..analyses import transient
+from ..analyses import solids, transient
 from ..analyses.recording import Progress
 from ..analyses.registry import Analysis
 from ..analyses.transient import Transient
 from ..arrays import Array
-from ..bonds import Cells
 from ..errors import SceneError
 from ..geometry import Where
-from ..material import ConductivityTensor, ExpansionTensor
 from ..material.physics import ELASTICITY
 from ..problem import Support
-from ..result import Result, Table
+from ..result import Table
 from ..scene import Scene
-from ..state import State
 from .breaking import Criterion
+from .grown import Grown
 from .growth import Growth, require_whole_bonds
 from .quasistatic import grow
 from .temperatures import Temperatures
@@ -36,7 +32,7 @@ from .toughness import Toughness
 
 
 @dataclass(frozen=True, eq=False)
-class Quenched(Result):
+class Quenched(Grown):
     """A run in which cracks grew under temperatures, and the conduction behind these.
 
     Attributes
@@ -46,23 +42,7 @@ class Quenched(Result):
     heat : Transient
     """
 
-    growth: Growth
     heat: Transient
-
-    @property
-    def points(self) -> Array:
-        """Particle centres, shape (N, 2), m."""
-        return self.growth.points
-
-    @property
-    def cells(self) -> Cells | None:
-        """The particles' cells, parted where bonds carry nothing."""
-        return self.growth.cells
-
-    @property
-    def stressed(self) -> State:
-        """The last equilibrium."""
-        return self.growth.solution
 
     def fields(self) -> dict[str, Array]:
         """Those of the mechanics, the last temperatures among them."""
@@ -142,17 +122,12 @@ def run(
     require_whole_bonds(scene)
     if not (isfinite(change) and change != 0):
         raise SceneError(f"a quench changes the temperature of the surface, not by {change} K")
-    if not all(isfinite(k) and k > 0 for k in conductivities):
-        raise SceneError(f"conductivities must be positive and finite, not {conductivities}")
-    if not all(map(isfinite, expansions)):
-        raise SceneError(f"coefficients of expansion must be finite, not {expansions}")
     if not all(t > 0 for t in times):
         raise SceneError("the surface changes its temperature at time 0: times must be after it")
-    angle = radians(angle_degrees)
-    turn = np.array([[cos(angle), -sin(angle)], [sin(angle), cos(angle)]])
+    solid, expansion = solids.heated(conductivities, expansions, angle_degrees)
     conductor = replace(
         scene,
-        material=ConductivityTensor(turn @ np.diag(conductivities) @ turn.T),
+        material=solid,
         supports=[Support.edge(cooled, temperature=change)],
         loads=(),
         law=None,
@@ -163,7 +138,6 @@ def run(
         tip="drawn",
     )
     heat = transient.run(conductor, 0.0, times)
-    expansion = ExpansionTensor(turn @ np.diag(expansions) @ turn.T)
     fields = Temperatures.of(heat, expansion)
 
     def listen(growth: Growth) -> None:

@@ -11,17 +11,15 @@ from .. import recovery
 from ..analyses.recording import Progress
 from ..analyses.registry import Analysis
 from ..arrays import Array
-from ..bonds import Cells
 from ..errors import SceneError
 from ..geometry import Where
 from ..material import ElectricConductivityTensor
 from ..material.physics import ELASTICITY
 from ..problem import Load, Support
-from ..result import Result, Table
+from ..result import Table
 from ..scene import Scene
-from ..state import State
 from .analysis import run as break_bonds
-from .growth import Growth
+from .grown import Grown
 from .programme import Control
 from .sensing import Sensor
 
@@ -30,7 +28,7 @@ DROP = "drop"
 
 
 @dataclass(frozen=True, eq=False)
-class Sensed(Result):
+class Sensed(Grown):
     """A run in which cracks grew, and what the sensor read.
 
     Attributes
@@ -41,29 +39,13 @@ class Sensed(Result):
     sensor : Sensor
     """
 
-    growth: Growth
     sensor: Sensor
-
-    @property
-    def points(self) -> Array:
-        """Particle centres, shape (N, 2), m."""
-        return self.growth.points
-
-    @property
-    def cells(self) -> Cells | None:
-        """The particles' cells, parted where bonds carry nothing."""
-        return self.growth.cells
 
     @property
     def drop(self) -> Array:
         """The drop at every equilibrium, shape (k,), V."""
         history = self.growth.history
         return history.array[:, history.names.index(DROP)]
-
-    @property
-    def stressed(self) -> State:
-        """The last equilibrium."""
-        return self.growth.solution
 
     def fields(self) -> dict[str, Array]:
         """Those of the mechanics, and potential and current density as they were read last."""

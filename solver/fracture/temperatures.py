@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
-from ..errors import MechanismError, SceneError
+from ..errors import SceneError
 from ..geometry import Where
 from ..material import ExpansionTensor
 from ..operators.eigenstrain import Eigenstrain
@@ -179,15 +179,8 @@ class Tempered(Growth):
         now, self.bonds.free = self.bonds.free, free
         done = self.bonds.expansion_work(before, change)
         self.bonds.free = now
-        gone = len(self.bonds.broken)
-        step = self._equilibrium()
-        if len(self.bonds.broken) != gone:
-            # A part that nothing holds any more was set aside, with its bonds: what these took of
-            # the way here is not known.
-            raise MechanismError(
-                f"a part of the body is held by nothing at time {self.time:g}: it turns about a "
-                "point when its temperature changes"
-            )
+        # What expands loads nothing that moves freely: nothing has to be set aside for it.
+        step = self.body.solve()
         self.solves.append((0, step.iterations, step.refreshed))
         done += self.bonds.expansion_work(self.body.unknowns, change)
         self.ledger.warmed(0.5 * done)

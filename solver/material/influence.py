@@ -37,7 +37,7 @@ class Influence:
 
     def moment(self, power: int) -> float:
         """∫₀¹ ρ^power Λ(ρ) dρ."""
-        # A tenth of what importing the solver takes, for calibrations that most scenes do not use.
+        # Some per cent of what importing the solver takes, for calibrations that few scenes use.
         from scipy.integrate import quad
 
         return float(quad(lambda r: r**power * float(self(np.array(r))), 0.0, 1.0)[0])
