@@ -191,6 +191,7 @@ def _drain(
     registry: str,
 ) -> None:
     workers: list[_Worker] = []
+    jobs = min(jobs, len(todo))
     try:
         while todo or any(worker.task for worker in workers):
             while todo and len(workers) < jobs:

@@ -46,6 +46,16 @@ def test_a_method_that_raises_is_a_recorded_failure(tmp_path):
     assert kinds.count("finished") == 2
 
 
+def test_no_worker_is_started_for_nothing(tmp_path, monkeypatch):
+    started, start = [], runner._start
+    monkeypatch.setattr(runner, "_start", lambda *a: started.append(1) or start(*a))
+    _, kinds = run(["toy"], tmp_path, jobs=7)
+    assert kinds.count("finished") == 2
+    assert len(started) == 2
+    assert run(["toy"], tmp_path, jobs=7, resume=True)[1] == ["reused"] * 2
+    assert len(started) == 2
+
+
 def test_a_worker_that_dies_costs_only_its_task(tmp_path):
     records, kinds = run(["dying", "toy"], tmp_path, jobs=1)
     failures = [r.outcome for r in records if r.failed]
