@@ -30,10 +30,10 @@ import shapely
 from ..arrays import Array, Indices, Mask
 from ..compiled import kernel
 from . import exact
+from .crack import Crack
 from .exact import CELL, Frame, side, sign_of_cross
 from .inside import Body, _span, near_segments
 from .lattice import Lattice
-from .regions import Crack
 
 _OPTIONS: Any = {"nogil": True}
 # Units within which ends are one point: twice the rounding of each.

@@ -18,11 +18,12 @@ import shapely
 from numpy.typing import NDArray
 
 from ..arrays import Array, Indices, Mask
+from .crack import Crack
 from .crack_set import CrackSet
 from .exact import Frame
 from .faces import TIE, closed, meet, trace
 from .inside import Body
-from .regions import Crack, Region
+from .regions import Region
 from .rings import EDGE_STEP, rings
 
 # Distance of nodes in spacings, `EDGE_STEP` elsewhere: on edges that run obliquely through the

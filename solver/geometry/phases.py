@@ -27,12 +27,13 @@ from scipy.spatial import KDTree
 
 from ..arrays import Array, Indices
 from ..errors import SceneError
+from .crack import Crack
 from .crack_set import CrackSet
 from .exact import Frame
 from .inside import Body
 from .lattice import Lattice
 from .outline import INNER, Outline
-from .regions import Crack, Difference, Intersection, Point, Region
+from .regions import Difference, Intersection, Point, Region
 from .rings import EDGE_STEP, rings
 
 # Cells within which corners and edges of two phases are one.

@@ -1,9 +1,8 @@
-"""Shapes: which points belong to a body, and how far they are from its edge.
+"""Regions: which points belong to a body, and how far they are from its edge.
 
-Membership and distance of discs are exact (a polygon would miscount particles); polygons go
-through shapely. Shapes combine: ``a - b`` has holes and notches, ``a | b`` is both, ``a & b`` what
-they have in common. Where shapes meet along an edge they are one body, rounding or not; where they
-meet in a point they are two.
+Shapes (`solver.geometry.shapes`) combine: ``a - b`` has holes and notches, ``a | b`` is both,
+``a & b`` what they have in common. Where shapes meet along an edge they are one body, rounding or
+not; where they meet in a point they are two.
 
 Who owns the edge: **a point on the edge of a shape belongs to the shape that was drawn**, discs and
 polygons alike, within rounding. So a body has the particles on its outer edge; those on the rim of
@@ -16,8 +15,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from itertools import pairwise
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -30,9 +28,9 @@ from ..errors import EmptyRegionError, NoOutlineError
 Point = tuple[float, float]
 
 # Points nearer to an edge than this share of the shape's size lie on it,
-_EDGE = 1e-9
+EDGE = 1e-9
 # and those nearer than so many roundings of its coordinates.
-_ROUNDINGS = 4 * np.finfo(np.float64).eps
+ROUNDINGS = 4 * np.finfo(np.float64).eps
 # Share of that by which a point may lie off the line between its neighbours and be no corner.
 _STRAIGHT = 1e-3
 # Chords of curves, as a share of the size, from which the edge of a union is measured.
@@ -77,7 +75,7 @@ class Region(ABC):
     def moved(self, by: Point, grid: float = 0.0) -> Region:
         """The same shape `by` (m) further.
 
-        Shapes of this module move their own coordinates, so that nothing is lost to rounding far
+        Discs and polygons move their own coordinates, so that nothing is lost to rounding far
         from the origin. What had been lost there is restored where the coordinates then are
         multiples of `grid` (m) within that rounding: they become so exactly.
         """
@@ -124,14 +122,14 @@ class Region(ABC):
 def moved_points(points: Sequence[Point], by: Point, grid: float) -> tuple[Point, ...]:
     """Points `by` further, exactly on multiples of `grid` that they meet within rounding."""
     given = np.array(points, dtype=np.float64)
-    return _snapped(given + by, np.maximum(np.abs(given), np.abs(by)), grid)
+    return snapped(given + by, np.maximum(np.abs(given), np.abs(by)), grid)
 
 
-def _snapped(there: Array, size: Array, grid: float) -> tuple[Point, ...]:
+def snapped(there: Array, size: Array, grid: float) -> tuple[Point, ...]:
     """Points on the multiples of `grid` that they meet within the rounding of numbers of a size."""
     if grid > 0:
         near = np.rint(there / grid) * grid
-        there = np.where(np.abs(near - there) <= _ROUNDINGS * size, near, there)
+        there = np.where(np.abs(near - there) <= ROUNDINGS * size, near, there)
     return tuple((float(x), float(y)) for x, y in there)
 
 
@@ -145,7 +143,7 @@ def _same(*regions: Region) -> float:
     """Lengths (m) that rounding may make of nothing where some regions meet."""
     box = np.array([region.bounds for region in regions])
     size = float(np.ptp(box.reshape(-1, 2), axis=0).max())
-    return max(_EDGE * size, _ROUNDINGS * float(np.abs(box).max()))
+    return max(EDGE * size, ROUNDINGS * float(np.abs(box).max()))
 
 
 def _empty(made: Region, one: Region, other: Region) -> bool:
@@ -188,124 +186,6 @@ class Moved(Region):
 
     def edge_distance(self, x: Array, y: Array) -> Array:
         return self.shape.edge_distance(x - self.by[0], y - self.by[1])
-
-
-@dataclass(frozen=True)
-class Disc(Region):
-    """Disc of `radius` about `centre`, m; `slack` (m) is the rounding of where it was drawn."""
-
-    radius: float
-    centre: Point = (0.0, 0.0)
-    slack: float = field(default=0.0, compare=False, repr=False)
-
-    def __post_init__(self) -> None:
-        if not (np.isfinite(self.radius) and self.radius > 0):
-            raise ValueError(f"a disc needs a positive radius, not {self.radius}")
-
-    @property
-    def bounds(self) -> tuple[float, float, float, float]:
-        (x, y), r = self.centre, self.radius
-        return x - r, y - r, x + r, y + r
-
-    def contains(self, x: Array, y: Array) -> NDArray[np.bool_]:
-        tie = self._tie
-        return np.asarray(np.hypot(x - self.centre[0], y - self.centre[1]) <= self.radius + tie)
-
-    @property
-    def _tie(self) -> float:
-        return max(self.slack, _EDGE * self.radius, _ROUNDINGS * float(np.abs(self.centre).max()))
-
-    def moved(self, by: Point, grid: float = 0.0) -> Disc:
-        return Disc(self.radius, moved_points((self.centre,), by, grid)[0], self._tie)
-
-    def loosened(self) -> Disc:
-        return Disc(self.radius, self.centre, 2 * self._tie)
-
-    def outline(self, step: float) -> shapely.Geometry:
-        # A multiple of four keeps the lattice's symmetry.
-        count = max(24, 4 * int(np.ceil(0.5 * np.pi * self.radius / step - 1e-9)))
-        angle = 2 * np.pi * np.arange(count) / count
-        x, y = self.centre
-        return shapely.Polygon(
-            np.column_stack([x + self.radius * np.cos(angle), y + self.radius * np.sin(angle)])
-        )
-
-    def edge_distance(self, x: Array, y: Array) -> Array:
-        return np.abs(self.radius - np.hypot(x - self.centre[0], y - self.centre[1]))
-
-
-@dataclass(frozen=True)
-class Polygon(Region):
-    """Simple polygon through `vertices` (without holes; subtract those).
-
-    A vertex that repeats the one before it, as in a ring that says its first one again, is one.
-    `slack` (m) is the rounding of where it was drawn; `about` its centre and the vertices from
-    there, where they are known better than the vertices are.
-    """
-
-    vertices: tuple[Point, ...]
-    slack: float = field(default=0.0, compare=False, repr=False)
-    about: tuple[Point, tuple[Point, ...]] | None = field(default=None, compare=False, repr=False)
-
-    def __post_init__(self) -> None:
-        if not np.all(np.isfinite(np.asarray(self.vertices, dtype=np.float64))):
-            raise ValueError(f"a polygon with a vertex that is not finite: {self.vertices}")
-        before = self.vertices[-1:] + self.vertices[:-1]
-        if self.about is None and any(a == b for a, b in zip(before, self.vertices, strict=True)):
-            # A side without length has no normal.
-            single = [b for a, b in zip(before, self.vertices, strict=True) if a != b]
-            object.__setattr__(self, "vertices", tuple(single))
-        shape = shapely.Polygon(self.vertices) if len(self.vertices) > 2 else None
-        if shape is None or not shape.is_valid or shape.area == 0:
-            raise ValueError(f"not a simple polygon with an area: {self.vertices}")
-        shapely.prepare(shape)
-        object.__setattr__(self, "_shape", shape)
-        object.__setattr__(self, "_edge", shape.exterior)
-        shapely.prepare(self._edge)  # type: ignore[attr-defined]
-
-    @property
-    def shape(self) -> shapely.Polygon:
-        """The shapely polygon."""
-        return self._shape  # type: ignore[attr-defined]
-
-    @property
-    def bounds(self) -> tuple[float, float, float, float]:
-        x0, y0, x1, y1 = self.shape.bounds
-        return float(x0), float(y0), float(x1), float(y1)
-
-    def contains(self, x: Array, y: Array) -> NDArray[np.bool_]:
-        x, y = np.broadcast_arrays(x, y)
-        x0, y0, x1, y1 = self.bounds
-        tie = self._tie
-        inside = np.array(shapely.contains_xy(self.shape, x, y))
-        near = ~inside & (x >= x0 - tie) & (x <= x1 + tie) & (y >= y0 - tie) & (y <= y1 + tie)
-        edge = self._edge  # type: ignore[attr-defined]
-        inside[near] = shapely.dwithin(edge, shapely.points(x[near], y[near]), tie)
-        return inside
-
-    @property
-    def _tie(self) -> float:
-        x0, y0, x1, y1 = self.bounds
-        size = max(x1 - x0, y1 - y0)
-        return max(self.slack, _EDGE * size, _ROUNDINGS * float(np.abs(self.bounds).max()))
-
-    def moved(self, by: Point, grid: float = 0.0) -> Polygon:
-        if self.about is None:
-            return Polygon(moved_points(self.vertices, by, grid), self._tie)
-        centre, corners = self.about
-        (there,) = moved_points((centre,), by, grid)
-        size = np.maximum(np.abs(self.vertices), np.abs(by))
-        vertices = _snapped(np.add(corners, there), size, grid)
-        return Polygon(vertices, self._tie, (there, corners))
-
-    def loosened(self) -> Polygon:
-        return Polygon(self.vertices, 2 * self._tie, self.about)
-
-    def outline(self, step: float) -> shapely.Geometry:
-        return self.shape
-
-    def edge_distance(self, x: Array, y: Array) -> Array:
-        return shapely.distance(self.shape.exterior, shapely.points(x, y))
 
 
 @dataclass(frozen=True)
@@ -446,94 +326,6 @@ class Intersection(_Pair):
     def edge_distance(self, x: Array, y: Array) -> Array:
         # A part of one outline beyond the other is never the nearer one.
         return np.minimum(self.one.edge_distance(x, y), self.other.edge_distance(x, y))
-
-
-def disc(radius: float, centre: Point = (0.0, 0.0)) -> Disc:
-    """Disc of `radius` about `centre`, m."""
-    return Disc(float(radius), centre)
-
-
-def polygon(vertices: Sequence[Point]) -> Polygon:
-    """Polygon through `vertices`, m."""
-    return Polygon(tuple((float(x), float(y)) for x, y in vertices))
-
-
-def rectangle(
-    width: float, height: float, centre: Point = (0.0, 0.0), angle: float = 0.0
-) -> Polygon:
-    """Rectangle of `width` × `height` (m) about `centre`, turned anticlockwise by `angle` (rad).
-
-    Raises
-    ------
-    ValueError
-        If a side is not positive.
-    """
-    if not (width > 0 and height > 0):
-        raise ValueError(f"a rectangle needs positive sides, not {width} × {height}")
-    c, s = np.cos(angle), np.sin(angle)
-    corners = [(-width / 2, -height / 2), (width / 2, -height / 2)]
-    corners += [(-x, -y) for x, y in corners]
-    turned = tuple((float(c * x - s * y), float(s * x + c * y)) for x, y in corners)
-    vertices = tuple((float(centre[0] + x), float(centre[1] + y)) for x, y in turned)
-    return Polygon(vertices, about=(centre, turned))
-
-
-@dataclass(frozen=True)
-class Crack:
-    """Cut along the polyline through `points`; bonds that cross it are cut.
-
-    Cracks may share ends, cross, branch and overlap: they act as the one set of points that they
-    are, see `solver.geometry.crack_set`. An end that lies in the body is a tip and belongs to the
-    uncut material: a bond through the very tip stays. One on the body's edge, beyond it, or less
-    than half a cell before it is a mouth.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than two points, all coincide, or one is not finite.
-
-    Examples
-    --------
-    >>> Crack((-1.0, 0.0), (0.0, 0.0)).segments
-    (((-1.0, 0.0), (0.0, 0.0)),)
-    """
-
-    points: tuple[Point, ...]
-
-    def __init__(self, *points: Point) -> None:
-        array = np.array(points, dtype=np.float64)
-        if array.ndim != 2 or array.shape[1] != 2 or len(array) < 2:
-            raise ValueError(f"a crack runs through two or more points of the plane, not {points}")
-        if not np.all(np.isfinite(array)):
-            raise ValueError(f"a crack with a point that is not finite: {points}")
-        # A point drawn twice is one.
-        fresh = np.append(True, (np.diff(array, axis=0) != 0).any(axis=1))
-        array = array[fresh]
-        if len(array) < 2:
-            raise ValueError(f"a crack of no length: {points}")
-        object.__setattr__(self, "points", tuple((float(x), float(y)) for x, y in array))
-
-    def moved(self, by: Point, grid: float = 0.0) -> Crack:
-        """As `Region.moved`; the crack remembers as what it was drawn."""
-        result = Crack(*moved_points(self.points, by, grid))
-        object.__setattr__(result, "_drawn", self.drawn)
-        return result
-
-    @property
-    def drawn(self) -> tuple[Point, ...]:
-        """The points that the user gave, m: what messages say."""
-        drawn: tuple[Point, ...] = getattr(self, "_drawn", self.points)
-        return drawn
-
-    @property
-    def closed(self) -> bool:
-        """Whether it ends where it starts: then it has no tips."""
-        return self.points[0] == self.points[-1]
-
-    @property
-    def segments(self) -> tuple[tuple[Point, Point], ...]:
-        """Its straight pieces."""
-        return tuple(pairwise(self.points))
 
 
 #: A part of the plane: a region, or a function of the coordinates that says yes or no.

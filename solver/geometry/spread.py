@@ -16,12 +16,12 @@ from scipy.spatial import KDTree
 
 from ..arrays import Array, Indices, Mask
 from ..errors import NoOutlineError, SceneError
+from .crack import Crack
 from .crack_set import CrackSet
 from .exact import CELL, Frame
 from .inside import Body
 from .lattice import Lattice
 from .outline import Outline
-from .regions import Crack
 
 # Cells within which particles carry a point, and those tried where too few see it.
 _REACH, _FURTHER = 1.6, 3.0
