@@ -19,6 +19,8 @@ ELSEWHERE = {
     # Aliases of types, and classes without a body.
     "solver/arrays.py": "tests/test_architecture.py",
     "solver/errors.py": "tests/solver/test_scene.py",
+    # The state of a body that warms, which nothing but transients drive.
+    "solver/analyses/heating.py": "tests/solver/analyses/test_transient.py",
     # The state of a motion, which nothing but waves drives.
     "solver/analyses/motion.py": "tests/solver/analyses/test_waves.py",
     # A case is run, and perturbed, as a whole.

@@ -109,13 +109,13 @@ FAULTS = (
     ),
     Fault(
         "steps of heat 1 % too long",
-        f"{ANALYSES}.transient._March._step",
+        f"{ANALYSES}.heating.Heating._step",
         argument(2, times(1.01)),
         "transient",
     ),
     Fault(
         "error of a step not looked at",
-        f"{ANALYSES}.transient._March._first",
+        f"{ANALYSES}.heating.Heating._first",
         scaled(1e4),
         "transient",
         harmless="a first step too long is rejected and halved: the answer is the same",

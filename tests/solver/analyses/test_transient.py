@@ -16,7 +16,7 @@ from solver import (
     rectangle,
     transient,
 )
-from solver.analyses import transient as module
+from solver.analyses.heating import Heating
 from solver.operators import BondOperator
 from tests.solver.bodies import DISC
 
@@ -327,7 +327,7 @@ def plain(**options):
     ],
 )
 def test_bad_input_is_refused_before_any_step(monkeypatch, scene, arguments, options, match):
-    monkeypatch.setattr(module._March, "_step", lambda *_: pytest.fail("it began to step"))
+    monkeypatch.setattr(Heating, "_step", lambda *_: pytest.fail("it began to step"))
     with np.errstate(divide="ignore"), pytest.raises(SceneError, match=match):
         transient.run(plain(**scene), *arguments, **options)
 
