@@ -20,7 +20,7 @@ from solver.geometry import Outline
 from solver.material import calibrate
 from solver.operators.skin import shares, thickness
 from tests.solver.bodies import DISC, FIG_7, conductivities, few, voigts
-from tests.solver.bonds.test_ended import body, homogeneous_error
+from tests.solver.bonds.ending import body, homogeneous_error
 
 
 def skin(region, m, material, cracks=()):
