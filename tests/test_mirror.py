@@ -21,8 +21,9 @@ ELSEWHERE = {
     "solver/errors.py": "tests/solver/test_scene.py",
     # The state of a body that warms, which nothing but transients drive.
     "solver/analyses/heating.py": "tests/solver/analyses/test_transient.py",
-    # The state of a motion, which nothing but waves drives.
-    "solver/analyses/motion.py": "tests/solver/analyses/test_waves.py",
+    # How a motion steps: both methods are held against the same laws.
+    "solver/analyses/newmark_motion.py": "tests/solver/analyses/test_motion.py",
+    "solver/analyses/verlet_motion.py": "tests/solver/analyses/test_motion.py",
     # A case is run, and perturbed, as a whole.
     "cmverify/case.py": "tests/cmverify/judge/test_verdict.py",
     "cmverify/cases/closed_forms/constants.py": "tests/cmverify/faults/test_table.py",

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,8 +22,6 @@ from .stepping import (
     ROTATIONAL_INERTIA,
     InertRotations,
     Internal,
-    Newmark,
-    Verlet,
     largest_frequency,
     require_end,
     stable_step,
@@ -31,8 +31,6 @@ from .stepping import (
 _ROUGH = 1e-4
 # Negative strain energy beyond this share of the whole is no rounding.
 _RELEASED = 1e-6
-# Newmark's usual step in stable ones of Verlet's.
-_LONG = 10.0
 
 
 @dataclass(frozen=True)
@@ -52,8 +50,10 @@ class Settings:
     tolerance: float
 
 
-class Motion:
+class Motion(ABC):
     """Displacements and velocities of the active particles, from step to step.
+
+    How they step is a subclass's: `solver.analyses.verlet_motion`, `newmark_motion`.
 
     Parameters
     ----------
@@ -64,6 +64,9 @@ class Motion:
     initial, velocity : values of two components
     settings : Settings
     """
+
+    #: The usual step in stable ones of Verlet's.
+    usual = 1.0
 
     def __init__(
         self,
@@ -118,7 +121,6 @@ class Motion:
         self.work = self.dissipated = 0.0
         self.kept: list[Array] = []
         self.largest = 0.0
-        self.last_load, self.last_energy = np.zeros(0), 0.0
 
     def _massless(self, tolerance: float) -> MasslessRotations:
         operator, kind = self.body.operator, self.body.stability.kind
@@ -135,52 +137,34 @@ class Motion:
         if not (np.isfinite(frequency) and frequency > 0):
             raise SceneError("nothing can move: every particle is held")
         self.stable = stable_step(frequency, settings.alpha, settings.beta)
-        verlet = settings.scheme == "verlet"
         step = settings.step
         if step is None:
-            step = settings.courant * self.stable * (1.0 if verlet else _LONG)
-        elif verlet and step > self.stable:
-            raise SceneError(
-                f"a step of {step:.6g} s is beyond the stable one of this body, "
-                f"{self.stable:.6g} s: take a shorter one, or scheme='newmark'"
-            )
+            step = settings.courant * self.stable * self.usual
+        else:
+            self._admit(step)
         whole = settings.end - settings.start
         require_end(whole, step)
         self.count = max(1, int(np.ceil(whole / step * (1 - 1e-9))))
         self.step = whole / self.count
-        if verlet:
-            self.internal: Internal = (
-                probe if self.rows == 3 else self._massless(settings.tolerance)
-            )
-            self.internal.products = self.internal.inner = 0
-            #: Condenses couples; the last ones and what they exert are kept.
-            self.loaded = self._massless(settings.tolerance)
-            self.moment = self.exerted = np.zeros(0)
-            self.verlet = Verlet(self.internal, self.mass, self.step, settings.alpha, settings.beta)
-        else:
-            full = np.zeros((self.body.operator.components, len(self.body.operator.active)))
-            full[:2] = self.mass
-            self.newmark = Newmark(
-                self.body.operator,
-                self.body.stability.kind,
-                full,
-                self.step,
-                settings.alpha,
-                settings.beta,
-                settings.tolerance,
-            )
+        self._prepare(probe)
+
+    @abstractmethod
+    def _admit(self, step: float) -> None:
+        """Refuse a step that is too long."""
+
+    @abstractmethod
+    def _prepare(self, probe: Internal) -> None:
+        """Make what the steps need, for the step that was chosen."""
 
     @property
+    @abstractmethod
     def products(self) -> int:
         """Products with the whole operator so far (Newmark: iterations)."""
-        if self.settings.scheme == "newmark":
-            return self.newmark.solver.iterations
-        return self.internal.products + self.loaded.products
 
     @property
+    @abstractmethod
     def inner(self) -> int:
         """Products with the rotation block so far."""
-        return 0 if self.settings.scheme == "newmark" else self.internal.inner + self.loaded.inner
 
     # ---- forces -------------------------------------------------------------------------
 
@@ -204,25 +188,6 @@ class Motion:
         """Two times near one, none before the start, between which velocities are differences."""
         near = 1e-3 * self.step
         return max(time - near, self.settings.start), time + near
-
-    def _condensed(self, time: float) -> Array:
-        """Loads of the moving unknowns, those of massless rotations condensed onto them.
-
-        Couples act through rotations that follow at once; so do supports that hold neighbours.
-        Supports' velocity lags half a step like that of all others.
-        """
-        early, late = (time - self.step, time) if self.steps else self._around(time)
-        load = self._pushed(early, late, time)
-        if self.rows == len(load):
-            return load
-        moment = load[2]
-        if not moment.any():
-            return load[:2]
-        if not np.array_equal(moment, self.moment):
-            self.exerted, theta = self.loaded(np.zeros_like(self.mass), moment)
-            self.loaded.remember(theta)
-            self.moment = moment.copy()
-        return np.asarray(load[:2] - self.exerted)
 
     def _given(self, time: float) -> Array:
         """Prescribed values of the active particles, shape (components, active)."""
@@ -339,9 +304,9 @@ class Motion:
 
     # ---- steps --------------------------------------------------------------------------
 
+    @abstractmethod
     def go(self, progress: Progress | None) -> None:
         """Move to the end."""
-        (self._go_verlet if self.settings.scheme == "verlet" else self._go_newmark)(progress)
 
     def _after(self, progress: Progress | None) -> None:
         self.steps += 1
@@ -357,143 +322,6 @@ class Motion:
         times, k = self.settings.times, len(self.kept)
         return k < len(times) and bool(times[k] <= until * (1 + 1e-14))
 
-    def _go_verlet(self, progress: Progress | None) -> None:
-        """At each pass: u at the present time, v half a step before."""
-        verlet, h = self.verlet, self.step
-        # The velocity at the last step, where fields between the two are wanted.
-        self.before = np.zeros_like(self.v)
-        if self.saved is not None and self._restore(self.saved):
-            return
-        moving = self.fixed[: self.rows] if self.fixed.any() else None
-        while True:
-            load = self._condensed(self.time)
-            internal, a = verlet.force(self.u, self.v, load)
-            begin = self.steps == 0
-            after = verlet.first(self.v, a) if begin else verlet.next(self.v, a)
-            now = self.v if begin else 0.5 * (self.v + after)
-            self._account(internal, load, after, begin)
-            while self._pending(self.time):
-                self._interpolate(float(self.settings.times[len(self.kept)]), now)
-            if self.steps == self.count:
-                break
-            if self._pending(self.time + h):
-                self.before = now.copy()
-            self.v = after
-            self.u = self.u + h * self.v
-            if moving is not None:
-                late = self.time + h if self.steps + 1 < self.count else self.settings.end
-                there = self._given(late)[: self.rows][moving]
-                self.v[moving] = (there - (self.u - h * self.v)[moving]) / h
-                self.u[moving] = there
-            self._after(progress)
-        self._save(done=True)
-
-    def _account(self, internal: Array, load: Array, after: Array, begin: bool) -> None:
-        """Energy, work and dissipation up to the present time, and a row for them."""
-        h, u, v, m = self.step, self.u, self.v, self.mass
-        kinetic = 0.5 * float(np.vdot(m * v, v))
-        there = u if begin else u - h * v
-        strain = 0.5 * float(np.vdot(internal, self._free(there)))
-        lagged = u + self.verlet.beta * v if self.verlet.beta else u
-        stored = 0.5 * float(np.vdot(internal, self._free(lagged)))
-        self._row(kinetic, strain, stored, self._momentum(v))
-        if begin:
-            # The balance starts at the first half step, whose energy is another one.
-            return
-        mean = 0.5 * (v + after)
-        mean[m == 0] = 0.0
-        done = h * float(np.vdot(load, mean))
-        change = float(np.vdot(m * (after - v), mean)) + h * float(np.vdot(internal, mean))
-        self.work += done
-        self.dissipated += done - change
-
-    def _free(self, u: Array) -> Array:
-        return np.where(self.fixed[: self.rows], 0.0, u) if self.fixed.any() else u
-
-    def _interpolate(self, time: float, now: Array) -> None:
-        """Fields at a time of the last step by cubic interpolation."""
-        h = self.step
-        s = 1.0 - (self.time - time) / h
-        if self.steps == 0 or s >= 1.0 - 1e-12:
-            self._keep(time, self.u, now)
-            return
-        last = self.u - h * self.v
-        u = (
-            (2 * s**3 - 3 * s**2 + 1) * last
-            + (s**3 - 2 * s**2 + s) * h * self.before
-            + (3 * s**2 - 2 * s**3) * self.u
-            + (s**3 - s**2) * h * now
-        )
-        v = (
-            6 * (s**2 - s) * (last - self.u) / h
-            + (3 * s**2 - 4 * s + 1) * self.before
-            + (3 * s**2 - 2 * s) * now
-        )
-        self._keep(time, u, v)
-
-    def _go_newmark(self, progress: Progress | None) -> None:
-        """At each pass: u, v and a at the present time."""
-        operator, newmark = self.body.operator, self.newmark
-        shape = (operator.components, len(operator.active))
-        u, v = np.zeros(shape), np.zeros(shape)
-        m = newmark.mass
-        if self.saved is None:
-            u[:2], v[:2] = self.u, self.v
-            if shape[0] == 3:
-                u[2] = self._rotations(self.time, u[:2])
-            load = self._pushed(*self._around(self.time), self.time)
-            # Rotations of u + β v, which the damping with the stiffness turns too.
-            lagged = np.where(self.fixed[:2], 0.0, u[:2] + newmark.beta * v[:2])
-            moment = load[2] if shape[0] == 3 else None
-            force, _ = self._massless(1e-12)(lagged, moment)
-            a = np.zeros(shape)
-            free = m[:2] > 0
-            np.divide(load[:2] - force, m[:2], out=a[:2], where=free)
-            a[:2] -= newmark.alpha * v[:2] * free
-            self.guess = u.copy()
-            self.u, self.v, self.a = u, v, a
-            self._count_newmark(load, None)
-            if self._pending(self.time):
-                self._keep(self.time, self.u, self.v)
-        elif self._restore(self.saved):
-            return
-        while self.steps < self.count:
-            last_u, last_v, last_a = self.u, self.v, self.a
-            late = self.time + self.step if self.steps + 1 < self.count else self.settings.end
-            load = self._pushed(*self._around(late), late)
-            self.u, self.v, self.a, self.guess = newmark.advance(
-                last_u, last_v, last_a, self.guess, load, self._given(late)
-            )
-            previous, self.time = self.time, late
-            self._count_newmark(load, (last_u, last_v))
-            while self._pending(self.time):
-                t = float(self.settings.times[len(self.kept)])
-                s = (t - previous) / self.step
-                # The average acceleration is constant in a step.
-                mean = 0.5 * (last_a + self.a)
-                d = s * self.step
-                at = last_u + d * last_v + 0.5 * d * d * mean
-                self._keep(t, self.u if s > 1 - 1e-12 else at, last_v + d * mean)
-            self._after(progress)
-        self._save(done=True)
-
-    def _count_newmark(self, load: Array, last: tuple[Array, Array] | None) -> None:
-        """Energies at the step, and work and dissipation over it by the mean of both ends."""
-        operator, m = self.body.operator, self.newmark.mass
-        force = operator.product(np.where(self.fixed, 0.0, self.u), masked=True)
-        free = np.where(self.fixed, 0.0, self.u)
-        kinetic = 0.5 * float(np.vdot(m * self.v, self.v))
-        strain = 0.5 * float(np.vdot(force, free))
-        if last is not None:
-            change = free - np.where(self.fixed, 0.0, last[0])
-            done = 0.5 * float(np.vdot(load + self.last_load, change))
-            self.work += done
-            self.dissipated += done - (kinetic + strain - self.last_energy)
-            if not (self.newmark.alpha or self.newmark.beta):
-                self.dissipated = 0.0
-        self.last_load, self.last_energy = load, kinetic + strain
-        self._row(kinetic, strain, strain, self._momentum(self.v))
-
     # ---- state --------------------------------------------------------------------------
 
     def _save(self, done: bool = False) -> None:
@@ -507,16 +335,7 @@ class Motion:
             "log": self.log.rows,
             "kept": np.array(self.kept).reshape(len(self.kept), 5, self.body.lattice.count),
         }
-        if self.settings.scheme == "newmark":
-            state |= {"a": self.a, "guess": self.guess, "load": self.last_load}
-            state["energy"] = self.last_energy
-        else:
-            state["before"] = self.before
-            state |= {"moment": self.moment, "exerted": self.exerted}
-            state["turned"] = np.array(self.loaded.past)
-            if isinstance(self.internal, MasslessRotations):
-                state["past"] = np.array(self.internal.past)
-        self.file.save(state)
+        self.file.save(state | self._own())
 
     def _restore(self, state: dict[str, Array]) -> bool:
         """Go back to a saved state; whether it is that of a finished run."""
@@ -525,15 +344,13 @@ class Motion:
         self.steps, products, inner, done = state["counts"].tolist()
         self.log = Log(state["log"].shape[1], state["log"])
         self.kept = list(state["kept"])
-        if self.settings.scheme == "newmark":
-            self.a, self.guess, self.last_load = state["a"], state["guess"], state["load"]
-            self.last_energy = float(state["energy"])
-            self.newmark.solver.iterations = products
-            return bool(done)
-        self.before = state["before"]
-        self.moment, self.exerted = state["moment"], state["exerted"]
-        self.loaded.past = list(state["turned"])
-        self.internal.products, self.internal.inner = products, inner
-        if isinstance(self.internal, MasslessRotations):
-            self.internal.past = list(state["past"])
+        self._take_back(state, products, inner)
         return bool(done)
+
+    @abstractmethod
+    def _own(self) -> dict[str, Any]:
+        """What the scheme adds to a state."""
+
+    @abstractmethod
+    def _take_back(self, state: dict[str, Array], products: int, inner: int) -> None:
+        """What it needs of a saved one."""

@@ -37,8 +37,10 @@ from ..problem import Description, Discretisation, Forcing
 from ..problem.values import Value
 from ..result import Result, Table
 from .motion import Motion, Settings
+from .newmark_motion import NewmarkMotion
 from .recording import History, Progress, checked_times
 from .registry import Analysis
+from .verlet_motion import VerletMotion
 
 
 @dataclass(frozen=True)
@@ -248,7 +250,8 @@ def run(
     )
     body = Discretisation.of(scene.at(start), free=True)
     with one_thread(), threads.suited(body.operator):
-        motion = Motion(body, scene, initial, velocity, settings)
+        stepping = VerletMotion if settings.scheme == "verlet" else NewmarkMotion
+        motion = stepping(body, scene, initial, velocity, settings)
         motion.record(probes, series, checkpoint, every)
         setup = perf_counter() - begun
         motion.go(progress)
