@@ -67,6 +67,9 @@ ELSEWHERE = {
     "cmverify/report/summary.py": "tests/cmverify/report/test_build.py",
     "cmverify/report/terminal.py": "tests/cmverify/test_cli.py",
     # Commands and what they run.
+    "cmverify/cases/command.py": "tests/cmverify/test_cli.py",
+    "cmverify/report/command.py": "tests/cmverify/test_cli.py",
+    "cmverify/run/command.py": "tests/cmverify/test_cli.py",
     "cmverify/doctor.py": "tests/cmverify/test_cli.py",
     "cmverify/exchange/command.py": "tests/cmverify/exchange/test_start_file.py",
     "cmverify/exchange/meanings.py": "tests/cmverify/exchange/test_schema.py",

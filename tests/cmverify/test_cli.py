@@ -139,9 +139,9 @@ def test_version_and_manners(toys, tmp_path):
 
 
 def test_shells_complete_cases_and_tags():
-    from cmverify.cli import _complete
+    from cmverify.cases.command import complete
 
-    assert _complete("crack-t") == ["crack-tip", "crack-tip-I", "crack-tip-II"]
+    assert complete("crack-t") == ["crack-tip", "crack-tip-I", "crack-tip-II"]
 
 
 def test_help_and_list_import_nothing_heavy():

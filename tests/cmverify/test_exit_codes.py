@@ -9,7 +9,8 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from cmverify import cli, errata
+from cmverify import errata
+from cmverify.cases import command as listing
 from cmverify.cli import app
 from cmverify.exchange import scene_file
 from cmverify.exchange.output import existing_series
@@ -100,7 +101,7 @@ def test_what_breaks_off_is_three_in_one_line(here, monkeypatch, error):
     def broken(*_, **__):
         raise error
 
-    monkeypatch.setattr(cli, "_select", broken)
+    monkeypatch.setattr(listing, "chosen", broken)
     code, said = invoked("list")
     assert code == 3
     assert said.startswith("interrupted: ")
@@ -108,7 +109,7 @@ def test_what_breaks_off_is_three_in_one_line(here, monkeypatch, error):
 
 
 def test_a_fault_of_ours_is_shown_to_those_who_ask(monkeypatch):
-    monkeypatch.setattr(cli, "_select", lambda *_: 1 / 0)
+    monkeypatch.setattr(listing, "chosen", lambda *_: 1 / 0)
     assert "ZeroDivisionError" in invoked("list")[1]
     found = CliRunner().invoke(app, ["--verbose", "list"])
     assert isinstance(found.exception, ZeroDivisionError)
