@@ -11,6 +11,7 @@ import pytest
 from cmverify.case import Case, Level, Measurement
 from cmverify.cases import counts, crack_tip, disc, patch, registry
 from cmverify.cases.common import adapters
+from cmverify.cases.crack_tip import measure
 from cmverify.judge.verdict import declared, judge
 
 
@@ -234,14 +235,14 @@ def test_rows_are_the_nearest_and_the_upper_of_two():
 
 
 def test_stress_ahead_of_nothing_is_not_a_pass():
-    found = crack_tip.stress_ahead(
+    found = measure.stress_ahead(
         crack_tip.Problem(1.0, 0.0), np.array([[0.0, 0.9]]), lambda index: index * 1.0, 30
     )
     assert np.isnan(found["stress ahead"])
 
 
 def test_pure_mode_two_has_no_stress_ahead():
-    assert crack_tip.stress_ahead(crack_tip.Problem(0.0, 1.0), np.zeros((1, 2)), len, 30) == {}
+    assert measure.stress_ahead(crack_tip.Problem(0.0, 1.0), np.zeros((1, 2)), len, 30) == {}
 
 
 def test_measurements_are_complete_for_the_report():
