@@ -38,7 +38,6 @@ _WITHOUT = {
     "fracture": "what breaks and by which law is the lattice's own: compare its cracks with other "
     "programs' by cmverify compare",
     "quench": "finite elements know no growing crack; compare its heat alone, by [transient]",
-    "waves": "their meshes would have to follow the shortest wave, as no other analysis' do",
 }
 #: A temperature that varies by less than this share of itself does not vary.
 _LEVEL = 1e-12

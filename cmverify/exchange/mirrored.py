@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 #: Steps of heat: in each of eight pieces of the first interval, on the coarse mesh; twice as many
 #: on the fine one.
 _STEPS = 4
+#: Most steps of a motion on the coarse mesh.
+_MOST_STEPS = 5_000
 
 
 def statics(request: Request, whole: Any, ours: dict[str, Array], *meshes: Mirror) -> Told:
@@ -104,8 +106,8 @@ def transient(request: Request, whole: Any, ours: dict[str, Array], *meshes: Mir
             moduli,
             one.stored("heat_capacity"),
             body.nodal(lambda x, y: given(options["initial"], x, y, 1, start)),
-            _then(one.supported, timed, start),
-            _then(one.loaded, timed, start),
+            _then(one.supported, 1, timed, start),
+            _then(one.loaded, 1, timed, start),
             times,
             start,
             steps,
@@ -125,11 +127,70 @@ def transient(request: Request, whole: Any, ours: dict[str, Array], *meshes: Mir
     )
 
 
-def _then(of: Callable[[int, float], Array], timed: bool, start: float) -> Callable[[float], Array]:
+def waves(request: Request, whole: Any, ours: dict[str, Array], *meshes: Mirror) -> Told:
+    """Displacements at all the times, and displacement and velocity at the end."""
+    from references.fem.motion import moved
+
+    options, points, scene = request.options, whole.points, request.scene
+    start, times = float(options.get("start", 0.0)), [float(t) for t in whole.times]
+    alpha, beta = (float(part) for part in options.get("damping", (0.0, 0.0)))
+    step, span = float(whole.statistics.step), times[-1] - start
+    if span > _MOST_STEPS * step:
+        raise ValueError(
+            f"half of the lattice's step would be {2 * span / step:.2g} steps of theirs, and they "
+            f"take {2 * _MOST_STEPS:g}: end earlier, or by scheme = 'newmark'"
+        )
+    moving = any(support.timed for support in scene.supports)
+    driven = any(load.timed for load in scene.loads)
+    found = []
+    for one, share in zip(meshes, (0.5, 1.0), strict=True):
+        body = one.body(2)
+        first, speed = (
+            body.nodal(partial(_at_start, options.get(name, (0.0, 0.0)), start))
+            for name in ("initial", "velocity")
+        )
+        fields = moved(
+            body,
+            body.stiffness(one.moduli()),
+            body.mass(one.stored("density")),
+            (alpha, beta),
+            (first, speed),
+            _then(one.supported, 2, moving, start),
+            _then(one.loaded, 2, driven, start),
+            times,
+            share * step,
+            start,
+        )
+        found.append([np.stack([part.at(points) for part in parts]) for parts in fields])
+    fine, coarse = (np.stack(each) for each in found)
+    free = ~np.asarray(whole.body.held)
+    told = [
+        Quantity("displacement", ours["displacement"], fine[-1, 0], coarse[-1, 0], free),
+        Quantity("velocity", ours["velocity"], fine[-1, 1], coarse[-1, 1], free),
+    ]
+    if len(times) > 1:
+        a, b, c = (
+            np.moveaxis(part, 0, 1).reshape(len(points), -1)
+            for part in (whole.displacement, fine[:, 0], coarse[:, 0])
+        )
+        told.insert(0, Quantity("displacement at all times", a, b, c, free, drawn=False))
+    notes = ["finite elements take half of the step, on the coarse mesh the whole"]
+    if options.get("rotations") == "inertia":
+        notes.append("finite elements of a Cauchy solid have no rotations, and no inertia of them")
+    return Told(told, tuple(notes))
+
+
+def _at_start(value: Any, start: float, x: Array, y: Array) -> Array:
+    return given(value, x, y, 2, start)
+
+
+def _then(
+    of: Callable[[int, float], Array], components: int, timed: bool, start: float
+) -> Callable[[float], Array]:
     """What a scene says at a time; what does not depend on it is found once."""
     if timed:
-        return partial(of, 1)
-    always = of(1, start)
+        return partial(of, components)
+    always = of(components, start)
     return lambda _: always
 
 
@@ -138,9 +199,10 @@ MIRRORED: dict[str, Callable[..., Told]] = {
     "solve": statics,
     "modes": modes,
     "transient": transient,
+    "waves": waves,
     "thermoelastic": mirrored_coupled.thermoelastic,
     "joule": mirrored_coupled.joule,
     "piezoresistive": mirrored_coupled.piezoresistive,
 }
 #: Most triangles: where each step is a solve, or three fields hang together.
-TRIANGLES = {"transient": 20_000, "thermoelastic": 8_000, "modes": 20_000}
+TRIANGLES = {"transient": 20_000, "waves": 8_000, "thermoelastic": 8_000, "modes": 20_000}

@@ -227,7 +227,6 @@ def test_particles_of_a_layer_are_held_whatever_their_rotation(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (SOLID + HELD + "[waves]\nend = 2.0\n", r"\[waves\] .*no \[waves\] here: their meshes"),
         (SOLID + HELD + "[fracture]\nG1 = 1.0\nstop = 1.0\n", r"\[fracture\] .*no \[fracture\]"),
         (SOLID + HELD + '[[load]]\nkind = "couple"\nvalue = 1.0\n', r"\[load #1\] .*body couples"),
         (SOLID + HELD + '[[support]]\nkind = "pin"\nwhere = "x > 0"\n', r"\[support #2\] .*'pin'"),

@@ -63,6 +63,19 @@ SCENES = {
          '"300 - x"': ('"300 - 2 * x"', "temperature at all times"),
          '"3 * t"': ('"9 * t"', "temperature")},
     ),
+    "waves": (
+        SOLID + INSET + 'material = { kind = "isotropic", E = 4.0, nu = 0.2, density = 2.5 }\n'
+        + HELD + 'displacement = ["0.01 * (1 - cos(4 * t))", 0.0]\n'
+        + '[[load]]\nkind = "stress"\nvalue = ["0.02 * sin(2 * t)", 0.0, 0.0]\nwhere = "x > 0.99"\n'
+        + '[waves]\nend = 1.5\ntimes = [0.9, 1.5]\ndamping = [0.2, 0.02]\n'
+        + 'velocity = ["0.01 * cos(2 * y)", "0.01 * sin(1.5 * x)"]\n',
+        {"displacement": 0.05, "velocity": 0.15, "displacement at all times": 0.05},
+        {"density = 2.5": ("density = 4.5", "displacement"),
+         "damping = [0.2, 0.02]": ("damping = [0.6, 0.1]", "displacement"),
+         "cos(4 * t)": ("cos(5 * t)", "displacement"),
+         "0.02 * sin": ("0.04 * sin", "displacement"),
+         "sin(1.5 * x)": ("sin(3 * x)", "velocity")},
+    ),
     "joule": (
         SOLID + LAYER + "[joule]\n" + WARM
         + 'sink = "abs(x) > 0.85"\nvoltage = 0.1\nconductivities = [1.0, 3.0]\n'
