@@ -38,7 +38,7 @@ Where cracks branch, cross or bend every sector of the body between them has a n
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -51,6 +51,8 @@ from .factors import Factors
 
 # Share of the spacing below which a bond's stiffness grows no more, and a chord does not count.
 SHORTEST = 0.1
+# Chords looked at together.
+_AT_ONCE = 1 << 18
 # Turn (rad) of the region's edge that makes a corner.
 _CORNER = 0.2
 
@@ -130,15 +132,22 @@ class Chords:
             full[inside] = mask[tuple(cells[inside].T)]
             return ~full
 
-        cell = cell[empty(cell)]
-        half = family.size // 2
-        start = np.repeat(cell, half, axis=0)
-        offset = np.tile(np.arange(half), len(cell))
-        step = family.offsets[offset]
-        kept = empty(start + step[:, ::-1])
-        start, offset, step = start[kept], offset[kept], step[kept]
-        origin = np.column_stack([x[0], y[0]]) + spacing * start[:, ::-1]
-        line, edge, position, share = outline.passages(origin, np.multiply(step, spacing))
+        half, box = family.size // 2, (outline.nodes.min(axis=0), outline.nodes.max(axis=0))
+        found = [(np.zeros((0, 2)), np.zeros(0, dtype=np.int64))]
+        # A chord for every offset of every cell, and nearly all pass the body by: few at a time.
+        for start in _slices(cell[empty(cell)], max(1, _AT_ONCE // half)):
+            begin = np.repeat(start, half, axis=0)
+            offset = np.tile(np.arange(half), len(start))
+            step = family.offsets[offset]
+            origin = np.column_stack([x[0], y[0]]) + spacing * begin[:, ::-1]
+            end = origin + np.multiply(step, spacing)
+            near = (np.maximum(origin, end) >= box[0]) & (np.minimum(origin, end) <= box[1])
+            tried = np.nonzero(near.all(axis=1))[0]
+            tried = tried[empty(begin[tried] + step[tried, ::-1])]
+            found.append((origin[tried], offset[tried]))
+        origin, offset = (np.concatenate(each) for each in zip(*found, strict=True))
+        bond = np.multiply(family.offsets[offset], spacing)
+        line, edge, position, share = outline.passages(origin, bond)
         whole = family.length[offset[line]]
         length = (share[:, 1] - share[:, 0]) * whole
         kept = length > SHORTEST * spacing
@@ -280,3 +289,9 @@ def _each(bonds: EndedBonds) -> tuple[str, ...]:
     """Names of what there is one of for every bond."""
     names = ("particle", "offset", "edge", "position", "length")
     return names if bonds.factor is None else (*names, "factor")
+
+
+def _slices(values: Indices, count: int) -> Iterator[Indices]:
+    """So many rows at a time."""
+    for begin in range(0, len(values), count):
+        yield values[begin : begin + count]
