@@ -7,6 +7,9 @@ from itertools import pairwise
 from math import dist
 from typing import TYPE_CHECKING
 
+import numpy as np
+import shapely
+
 from cmverify.exchange import budget
 from cmverify.exchange.model import SceneFile
 from cmverify.exchange.output import along
@@ -14,6 +17,10 @@ from cmverify.exchange.refusal import SceneFileError, Source
 
 if TYPE_CHECKING:
     from solver import Scene
+    from solver.geometry import Region
+
+#: Chords of curves, as a share of the body's size, and the turn (rad) that makes a corner.
+_CHORD, _TURN = 0.02, 0.2
 
 
 class CostError(SceneFileError):
@@ -22,8 +29,8 @@ class CostError(SceneFileError):
 
 def afford(
     file: SceneFile, scene: Scene, source: Source, memory: float | None, seconds: float
-) -> None:
-    """Refuse what would take too much memory or time.
+) -> budget.Cost:
+    """What it will take; refuse what would take too much memory or time.
 
     Raises
     ------
@@ -34,6 +41,7 @@ def afford(
         raise source.error(
             ("discretisation", "m"), f"the horizon is at least one cell, not {scene.m:g}"
         )
+    inner = [_edge(inclusion.region) for inclusion in scene.inclusions]
     cost = budget.estimate(
         x1 - x0,
         y1 - y0,
@@ -43,6 +51,9 @@ def afford(
         scene.surface,
         sum(dist(a, b) for crack in file.crack for a, b in pairwise(crack.path)),
         any(getattr(file, name, None) is not None for name in ("fracture", "sensing", "quench")),
+        _edge(scene.region),
+        # From either side; a corner of one of the two is none of the other.
+        budget.Edge(2 * sum(one.length for one in inner), sum(one.corners for one in inner)),
     )
     free = budget.SHARE * budget.free_memory() if memory is None else memory
     if too_much := cost.refusal(free, seconds):
@@ -50,6 +61,26 @@ def afford(
         key = "m" if cost.family > cost.particles else "spacing"
         error = source.error(("discretisation", key), f"{too_much}: ask for less or allow more")
         raise CostError(str(error))
+    return cost
+
+
+def _edge(region: Region) -> budget.Edge:
+    """Length of a region's edge, and its corners that turn inwards."""
+    x0, y0, x1, y1 = region.bounds
+    outline = region.outline(_CHORD * max(x1 - x0, y1 - y0))
+    corners = 0
+    for part in shapely.get_parts(outline):
+        if not isinstance(part, shapely.Polygon):
+            continue
+        for ring in (part.exterior, *part.interiors):
+            points = shapely.get_coordinates(ring)[:-1]
+            body_left = shapely.is_ccw(ring) == (ring is part.exterior)
+            along = np.diff(np.vstack([points, points[:1]]), axis=0)
+            before = np.roll(along, 1, axis=0)
+            cross = before[:, 0] * along[:, 1] - before[:, 1] * along[:, 0]
+            turn = np.arctan2(cross, (before * along).sum(axis=1))
+            corners += int((turn > _TURN).sum() if body_left else (turn < -_TURN).sum())
+    return budget.Edge(float(outline.length), corners)
 
 
 def try_on_lattice(file: SceneFile, scene: Scene, source: Source, start: float) -> None:

@@ -11,16 +11,20 @@ from math import pi
 
 #: Longest estimate (s) that is accepted without being asked for.
 SECONDS = 900.0
+# Estimate (s) from which on it is told.
+_LONG = 20.0
 #: Share of the memory that is free which a scene may take.
 SHARE = 0.8
 
 # Products of the operator in a solve: iterations of about 30, V-cycles of five products.
 _PRODUCTS = 200
 # Seconds a bond in a product, an offset of the family in the stability check, a bond of a particle
-# near the edge in the set-up, and a bond that ends at the surface.
-_PRODUCT, _OFFSET, _EDGE, _ENDED = 1e-9, 3e-4, 3e-7, 1e-5
+# near the edge in the set-up, a bond that ends at the surface, and a bond beside a corner that is
+# tried for what the corner cuts out of it.
+_PRODUCT, _OFFSET, _EDGE, _ENDED, _TRIED = 1e-9, 3e-4, 3e-7, 1e-5, 1e-7
 # The same in bytes, and of a particle's unknown.
 _OFFSET_BYTES, _EDGE_BYTES, _ENDED_BYTES, _UNKNOWN_BYTES = 4e4, 24.0, 500.0, 300.0
+_TRIED_BYTES = 20.0
 
 
 @dataclass(frozen=True)
@@ -31,6 +35,9 @@ class Cost:
     ----------
     particles, family : float
         Number of particles and of bonds of each.
+    ended, tried : float
+        Bonds that end at edges, faces of cracks and interfaces; and bonds beside corners that may
+        pass through them.
     memory : float, bytes
     seconds : float
         Of set-up and one solve.
@@ -38,8 +45,21 @@ class Cost:
 
     particles: float
     family: float
+    ended: float
+    tried: float
     memory: float
     seconds: float
+
+    @property
+    def told(self) -> str:
+        """What it is expected to take, where that is long; an empty string elsewhere."""
+        if self.seconds < _LONG:
+            return ""
+        return f"{self._size}: to set up and to solve once takes about {_time(self.seconds)}"
+
+    @property
+    def _size(self) -> str:
+        return f"about {_count(self.particles)} particles with {_count(self.family)} bonds each"
 
     def refusal(self, memory: float, seconds: float) -> str:
         """Why it is too much, or an empty string.
@@ -49,12 +69,27 @@ class Cost:
         memory, seconds : float
             Bytes and seconds that may be spent.
         """
-        size = f"about {_count(self.particles)} particles with {_count(self.family)} bonds each"
+        size = self._size
         if self.memory > memory:
             return f"{size} need {_bytes(self.memory)} of memory, and {_bytes(memory)} may be used"
         if self.seconds > seconds:
             return f"{size} take {_time(self.seconds)}, and {_time(seconds)} may be spent"
         return ""
+
+
+@dataclass(frozen=True)
+class Edge:
+    """Where bonds may end.
+
+    Attributes
+    ----------
+    length : float, m
+    corners : int
+        That turn inwards, seen along it with the body on the left.
+    """
+
+    length: float
+    corners: int
 
 
 def estimate(
@@ -66,8 +101,13 @@ def estimate(
     surface: str,
     crack_length: float = 0.0,
     growing: bool = False,
+    edge: Edge | None = None,
+    interfaces: Edge | None = None,
 ) -> Cost:
     """Cost of a body of these outer dimensions.
+
+    A horizon may be longer than the body: then no bond is missing that its particles have not,
+    and nearly all of theirs end somewhere.
 
     Parameters
     ----------
@@ -85,21 +125,33 @@ def estimate(
         Of all cracks, m.
     growing : bool
         Whether cracks are to grow: then every bond has a state.
+    edge : Edge, optional
+        Of the body; that of a rectangle by default.
+    interfaces : Edge, optional
+        Between its materials, seen from both sides: bonds end there with every treatment.
     """
     columns, rows = width / spacing + 1, height / spacing + 1
     particles, family = columns * rows, max(pi * m**2, 4.0)
     grid = (columns + 2 * m + 4) * (rows + 2 * m + 4)
-    rim = 2 * (columns + rows + crack_length / spacing)
+    edge = edge or Edge(2 * (width + height), 4)
+    inner = interfaces or Edge(0.0, 0)
+    rim = (edge.length + 2 * crack_length) / spacing + 4
     depth = {"none": 0.0, "volume": 2 * m, "extrapolated": m}[surface]
-    near = min(particles, rim * depth + crack_length / spacing * 2 * m)
+    near = min(particles, rim * depth + (crack_length + inner.length) / spacing * 2 * m)
+    extrapolated = surface == "extrapolated"
+    ends = rim * extrapolated + inner.length / spacing
     # 0.21 m F bonds cross a cell's length of a straight edge.
-    ended = min(rim * 0.21 * m, particles) * family if surface == "extrapolated" else 0.0
+    ended = min(ends * 0.21 * m, particles) * family
+    # Of every cell within a horizon of a corner half of the bonds.
+    corners = edge.corners * extrapolated + inner.corners
+    tried = 0.5 * family * min(corners * (2 * m + 3) ** 2, grid)
     bonds = particles * family
     memory = _OFFSET_BYTES * family + _UNKNOWN_BYTES * particles * components + 50 * grid
     memory += _EDGE_BYTES * near * family + _ENDED_BYTES * ended + 16 * bonds * growing
-    seconds = _OFFSET * family + _EDGE * near * family + _ENDED * ended
+    memory += _TRIED_BYTES * tried
+    seconds = _OFFSET * family + _EDGE * near * family + _ENDED * ended + _TRIED * tried
     seconds += _PRODUCT * _PRODUCTS * bonds
-    return Cost(particles, family, memory, seconds)
+    return Cost(particles, family, ended, tried, memory, seconds)
 
 
 def free_memory() -> float:

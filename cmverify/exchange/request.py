@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cmverify.exchange.budget import Cost
 from cmverify.exchange.model import SceneFile
 from cmverify.exchange.output import Selected
 from cmverify.exchange.refusal import Place, Source
@@ -34,6 +35,8 @@ class Request:
         What is done with it.
     options : dict
         Keywords of the analysis.
+    cost : Cost
+        What setting it up and solving it once will take.
     """
 
     source: Source
@@ -41,6 +44,7 @@ class Request:
     scene: Scene
     analysis: str
     options: dict[str, Any]
+    cost: Cost
 
     def run(self, progress: Callable[[float], None] | None = None) -> Result:
         """Do what the file asks for.

@@ -53,11 +53,11 @@ def request_of(
     """As `request`, of a file that was read (and changed, as a sweep does)."""
     file = declared(source)
     scene = _scene(file, source)
-    beforehand.afford(file, scene, source, memory, seconds)
+    cost = beforehand.afford(file, scene, source, memory, seconds)
     analysis, options = _asked(file, source)
     _timeless(file, source, analysis)
     _writable(file, scene, source, analysis)
-    found = Request(source, file, scene, analysis, options)
+    found = Request(source, file, scene, analysis, options, cost)
     if file.compare is not None:
         comparison.check(found)
     # Later times are tried by the analysis, before it starts.

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from cmverify.console import console, interrupted, refuse
+from cmverify.console import console, interrupted, manner, refuse
 
 
 class Compared(StrEnum):
@@ -65,6 +65,8 @@ def solve(
         if comparing:
             comparison.check(request)
         check_writable(base)
+        if request.cost.told and not manner().quiet:
+            screen.print(request.cost.told, soft_wrap=True)
         with share_done(screen, request.analysis) as tell:
             result = request.run(tell)
         said, paths = result.summary(), result.write(base)

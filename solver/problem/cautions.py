@@ -244,6 +244,13 @@ def thin_members(lattice: Lattice, m: float, surface: Surface) -> tuple[str, ...
     thin = _thin(mask, m)
     if not thin.any():
         return ()
+    cells = tuple(int(np.ptp(np.nonzero(mask.any(axis=axis))[0])) + 1 for axis in (0, 1))
+    if m >= max(cells):
+        return (
+            f"the horizon of {m:g} cells is longer than the body, {cells[0]} × {cells[1]} cells: "
+            f"no particle has even a third of its family, and the answer is all surface "
+            f"(surface={surface!r}); take m well below {min(cells)}, or a smaller spacing",
+        )
     # As thick as the disc that still passes; far from thin parts nothing tells.
     rows, columns = np.nonzero(thin)
     reach = int(3 * m) + 2
