@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt
 from scipy.spatial import KDTree
 
 from ..arrays import Array, Indices, Mask
@@ -77,11 +76,8 @@ class Bonds:
         self._drawn, self.phases = outline, phases
         rows, columns = lattice.rows_columns
         free = np.ones(lattice.count, bool) if prescribed is None else ~prescribed
-        longest = float(np.hypot(*family.offsets.T).max()) * (1 + _TIE)
-        edge_near = distance_transform_edt(lattice.mask)[rows, columns] <= longest
-        near = np.nonzero(edge_near)[0]
         #: Particles that lack at least one neighbour.
-        self.short: Indices = near[~self.exist(near).all(axis=0)]
+        self.short: Indices = np.nonzero(~_whole(lattice.mask, family.offsets)[rows, columns])[0]
         #: What the answer leaves out or settles by a rule, one sentence each.
         self.warnings: tuple[str, ...] = ()
         #: The body's polygon, None where its region does not say where its edges run.
@@ -110,7 +106,7 @@ class Bonds:
             if deficient.any():
                 grid = np.ones(lattice.shape, dtype=bool)
                 grid[rows[deficient], columns[deficient]] = False
-                special |= distance_transform_edt(grid)[rows, columns] <= longest
+                special |= ~_whole(grid, _disc(family))[rows, columns]
         #: Particles that own a column of `factors`, in the lattice's order.
         self.special: Indices = np.nonzero(special)[0]
         factors = self.exist(self.special).astype(np.float64)
@@ -213,15 +209,22 @@ class Bonds:
         rows, columns = lattice.rows_columns
         beyond = np.zeros(lattice.shape, dtype=bool)
         if not free.all():
-            away = []
+            away = _disc(self.family)
+            distance = (away**2).sum(axis=1)
+            kinds = []
             for kind in (free, ~free):
-                others = np.ones(lattice.shape, dtype=bool)
-                others[rows[kind], columns[kind]] = False
-                away.append(distance_transform_edt(others))
-            beyond = ~lattice.mask & (away[1] <= away[0] * (1 + _TIE))
+                grid = np.zeros(lattice.shape, dtype=bool)
+                grid[rows[kind], columns[kind]] = True
+                kinds.append(grid)
+            # Cells that a free particle is within reach of, nearest ones first.
+            reached = np.zeros(lattice.shape, dtype=bool)
+            for level in np.unique(distance):
+                near_free, near_held = (~_whole(~grid, away[distance == level]) for grid in kinds)
+                beyond |= near_held & ~reached
+                reached |= near_free
         dx, dy = self.family.offsets.T
         there = rows[particles] + dy[:, None], columns[particles] + dx[:, None]
-        return ~lattice.mask[there] & ~beyond[there]
+        return ~(lattice.mask | beyond)[there]
 
     def _end(
         self,
@@ -425,6 +428,24 @@ class Bonds:
         """Memory of everything stored for single bonds."""
         ended = 0 if self.ended is None else self.ended.nbytes
         return int(self.strengths.nbytes + self.special.nbytes + self.short.nbytes + ended)
+
+
+def _whole(grid: Mask, offsets: Indices) -> Mask:
+    """Cells of a grid from which all offsets lead to cells of it; beyond its rim all are."""
+    far, (rows, columns) = int(np.abs(offsets).max()), grid.shape
+    padded = np.pad(grid, far, constant_values=True)
+    found = np.ones_like(grid)
+    for dx, dy in offsets + far:
+        found &= padded[dy : dy + rows, dx : dx + columns]
+    return found
+
+
+def _disc(family: Family) -> Indices:
+    """All cells no farther than the longest bond, (n, 2)."""
+    longest = float(np.hypot(*family.offsets.T).max()) * (1 + _TIE)
+    far = int(longest)
+    cells = np.indices((2 * far + 1,) * 2).reshape(2, -1).T - far
+    return np.asarray(cells[np.hypot(*cells.T) <= longest])
 
 
 def damage(bonds: Bonds) -> Array:

@@ -20,6 +20,7 @@ from ..arrays import Array, Indices, Mask
 from .crack_set import CrackSet
 from .exact import CELL
 from .inside import Body
+from .meeting import TIE
 from .rings import CLOSE, SHARP
 
 # Units to which crossings of cracks are rounded, and length of what is left over of ends that were
@@ -27,8 +28,6 @@ from .rings import CLOSE, SHARP
 _GRID, _REST = 4.0, 16.0
 # Turn (rad) below which a crack is straight on.
 _STRAIGHT = 1e-4
-#: Share of a length within which a line counts as touching: some units of a cell, see `_GRID`.
-TIE = 2e-5
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,8 +21,9 @@ from ..arrays import Array, Indices, Mask
 from .crack import Crack
 from .crack_set import CrackSet
 from .exact import Frame
-from .faces import TIE, closed, meet, trace
+from .faces import closed, meet, trace
 from .inside import Body
+from .meeting import TIE, Edges
 from .regions import Region
 from .rings import EDGE_STEP, rings
 
@@ -46,8 +47,6 @@ _SAME = 1e-7
 _AT_NODE = 4e-5
 # Angle (rad) within which two directions are one, and in which who sits in a joint counts as lying.
 _NARROW, _UPWARDS = 1e-4, 0.5 * np.pi - 1e-3
-# Bonds whose candidates are compared at once.
-_CHUNK = 100_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,16 +212,9 @@ class Outline:
         return np.asarray(shapely.linestrings(ends))
 
     @cached_property
-    def _boxes(self) -> shapely.STRtree:
-        """Boxes about the edges, padded: rounding hides none from a bond that starts on it."""
-        first, last = self.nodes[self.edges[:, 0]], self.nodes[self.edges[:, 1]]
-        pad = TIE * self.length.max()
-        return shapely.STRtree(
-            shapely.box(
-                *(np.minimum(first, last) - pad).T,
-                *(np.maximum(first, last) + pad).T,
-            )
-        )
+    def _edges(self) -> Edges:
+        """The edges, for who asks what many bonds meet."""
+        return Edges(self.nodes[self.edges[:, 0]], self.nodes[self.edges[:, 1]])
 
     def _hit(
         self,
@@ -239,32 +231,25 @@ class Outline:
         """
         count = len(start)
         edge, position, share = np.full(count, -1), np.zeros(count), np.zeros(count)
-        outward = self.outward
-        first, last = self.nodes[self.edges[:, 0]], self.nodes[self.edges[:, 1]]
-        for begin in range(0, count, _CHUNK):
-            part = slice(begin, min(begin + _CHUNK, count))
-            ends = [start[part] + where * bond[part] for where in (low, high)]
-            path, met = self._boxes.query(shapely.linestrings(np.stack(ends, axis=1)))
-            path += begin
-            where, depth, valid = meet(start[path], bond[path], first[met], last[met], low, high)
-            # Bonds leave through an edge and do not enter: particles may lie in a sliver. A
-            # particle sees the face of a crack that is turned to it; one on the crack itself
-            # belongs to the upper side, as for bonds that the crack cuts.
-            leaves = self._leaves(bond[path], met, where) | grazing
-            inwards = np.einsum("ki,ki->k", bond[path], outward[met]) > 0
-            turned = inwards & self._turned(start[path], met)
-            valid &= np.where(self.face[met] == 0, leaves, turned)
-            # Where a crack branches, bends or meets an edge several nodes are met: only that on the
-            # particle's own side counts.
-            valid &= ~self._hidden(start[path], bond[path], met, where, tips)
-            path, met, where, depth = path[valid], met[valid], where[valid], depth[valid]
-            # Nearest to the bond itself, then to its start.
-            beyond = np.maximum(np.abs(depth - np.clip(depth, 0.0, 1.0)) - TIE, 0.0)
-            # Where several are met at once, which one counts must not depend on rounding.
-            order = np.lexsort((met, np.rint(depth / _SAME), np.rint(beyond / _SAME), path))
-            path, nearest = np.unique(path[order], return_index=True)
-            chosen = order[nearest]
-            edge[path], position[path], share[path] = met[chosen], where[chosen], depth[chosen]
+        path, met, where, depth = self._edges.met_by(start, bond, low, high)
+        # Bonds leave through an edge and do not enter: particles may lie in a sliver. A
+        # particle sees the face of a crack that is turned to it; one on the crack itself
+        # belongs to the upper side, as for bonds that the crack cuts.
+        leaves = self._leaves(bond[path], met, where) | grazing
+        inwards = np.einsum("ki,ki->k", bond[path], self.outward[met]) > 0
+        turned = inwards & self._turned(start[path], met)
+        valid = np.where(self.face[met] == 0, leaves, turned)
+        # Where a crack branches, bends or meets an edge several nodes are met: only that on the
+        # particle's own side counts.
+        valid &= ~self._hidden(start[path], bond[path], met, where, tips)
+        path, met, where, depth = path[valid], met[valid], where[valid], depth[valid]
+        # Nearest to the bond itself, then to its start.
+        beyond = np.maximum(np.abs(depth - np.clip(depth, 0.0, 1.0)) - TIE, 0.0)
+        # Where several are met at once, which one counts must not depend on rounding.
+        order = np.lexsort((met, np.rint(depth / _SAME), np.rint(beyond / _SAME), path))
+        path, nearest = np.unique(path[order], return_index=True)
+        chosen = order[nearest]
+        edge[path], position[path], share[path] = met[chosen], where[chosen], depth[chosen]
         return edge, position, share
 
     def _leaves(self, bond: Array, edge: Indices, position: Array) -> Mask:

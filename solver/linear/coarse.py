@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
+from scipy.ndimage import maximum_filter1d
 from scipy.sparse.csgraph import connected_components
 
 from ..arrays import Array, Float, Indices
@@ -98,10 +99,13 @@ class Hats:
         used = (weight > 0) & (piece < _PIECES)
         self._pieces_most = int(piece[used].max(initial=0)) + 1
         key = node[used] * _PIECES + piece[used]
-        keys, hat = np.unique(key, return_inverse=True)
+        there = np.zeros(_PIECES * self.grid.size[0] * self.width, dtype=bool)
+        there[key] = True
+        keys, hat = np.nonzero(there)[0], (np.cumsum(there) - 1)[key]
         self.count = len(keys)
-        particle = np.repeat(np.arange(count), 4).reshape(count, 4)[used]
-        prolongation = sparse.csr_array((weight[used], (particle, hat)), shape=(count, self.count))
+        # A particle's hats come in the order of their nodes: these are compressed rows already.
+        pointer = np.concatenate([[0], np.cumsum(used.sum(axis=1))])
+        prolongation = sparse.csr_array((weight[used], hat, pointer), shape=(count, self.count))
         self.prolongation = prolongation
         self.prolong = _Rows.of(prolongation)
         self.restrict = _Rows.of(prolongation.T.tocsr())
@@ -117,24 +121,32 @@ class Hats:
         broken = broken[operator.active]
         if not broken.any():
             return piece
-        suspects = np.unique(node[broken][weight[broken] > 0])
-        # Pieces are what the nearest intact bonds connect.
-        number = np.full(lattice.shape, -1, dtype=np.int64)
-        rows, columns = (axis[operator.active] for axis in lattice.rows_columns)
-        number[rows, columns] = np.arange(len(rows))
-        count, links = len(rows), []
-        for o in np.argsort(bonds.family.length, kind="stable")[:8]:
-            dx, dy = bonds.family.offsets[o]
-            neighbour = number[rows + dy, columns + dx]
-            links.append(np.where(bonds.strength(int(o))[operator.active] != 0, neighbour, -1))
+        suspect = np.zeros(self.grid.size[0] * self.width, dtype=bool)
+        suspect[node[broken][weight[broken] > 0]] = True
         # Pairs of a suspect and a particle of its support, by suspect and then by particle.
-        chosen = np.nonzero(np.isin(node.ravel(), suspects) & (weight.ravel() > 0))[0]
+        chosen = np.nonzero((suspect[node] & (weight > 0)).ravel())[0]
+        count = len(operator.active)
         key = node.ravel()[chosen] * count + chosen // 4
         chosen, key = chosen[np.argsort(key)], np.sort(key)
         hat, member = np.divmod(key, count)
+        # Pieces are what the nearest intact bonds connect.
+        number = np.full(lattice.shape, -1, dtype=np.int64)
+        rows, columns = (axis[operator.active] for axis in lattice.rows_columns)
+        number[rows, columns] = np.arange(count)
+        some = np.zeros(count, dtype=bool)
+        some[member] = True
+        place, some = np.cumsum(some) - 1, np.nonzero(some)[0]
+        own, links = bonds.column[operator.active[some]], []
+        for o in np.argsort(bonds.family.length, kind="stable")[:8]:
+            dx, dy = bonds.family.offsets[o]
+            neighbour = number[rows[some] + dy, columns[some] + dx]
+            special = own >= 0
+            neighbour[special] = np.where(
+                bonds.strengths[o, own[special]] != 0, neighbour[special], -1
+            )
+            links.append(neighbour[place[member]])
         starts, ends = [], []
-        for link in links:
-            neighbour = link[member]
+        for neighbour in links:
             wanted = hat * count + neighbour
             where = np.minimum(np.searchsorted(key, wanted), len(key) - 1)
             linked = (neighbour >= 0) & (key[where] == wanted)
@@ -190,22 +202,24 @@ class Hats:
             standing = self._standing(*known, stale)
         probe = _Probe(self)
         values, starts, ends = [standing[0]], [standing[1]], [standing[2]]
+        near = self._near(stale, high, wide)
+        up_to, right_to = (row[near] - high) % rows, (column[near] - wide) % columns
         for piece, colour_row, colour_column in np.ndindex(self._pieces_most, rows, columns):
-            lit = (self.piece == piece) & (row % rows == colour_row)
-            lit &= (column % columns == colour_column) & stale
-            if not lit.any():
+            up = (colour_row - up_to) % rows - high
+            right = (colour_column - right_to) % columns - wide
+            lit = near[(up == 0) & (right == 0) & stale[near] & (self.piece[near] == piece)]
+            if not len(lit):
                 continue
-            up = (colour_row - row + high) % rows - high
-            right = (colour_column - column + wide) % columns - wide
-            source = lookup[piece, row + up + rows, column + right + columns]
-            felt = np.nonzero((source >= 0) & stale[source])[0]
+            source = lookup[piece, row[near] + up + rows, column[near] + right + columns]
+            some = (source >= 0) & stale[source]
+            felt, source = near[some], source[some]
             probe.light(lit)
             # Columns of stale hats are probed; their rows follow by symmetry, the rest stands.
             mirrored = ~stale[felt]
             for b in range(c):
                 answer = probe(b, felt)
                 for a in range(c):
-                    here, there = a * self.count + felt, b * self.count + source[felt]
+                    here, there = a * self.count + felt, b * self.count + source
                     values += [answer[a], answer[a, mirrored]]
                     starts += [here, there[mirrored]]
                     ends += [there, here[mirrored]]
@@ -220,6 +234,14 @@ class Hats:
         return self.operator.ended_stiffness.condensed(
             self.operator.surface_basis(self.prolongation), _SMALL
         )
+
+    def _near(self, stale: NDArray[np.bool_], high: int, wide: int) -> Indices:
+        """Hats that stale ones can feel, themselves among them, in order."""
+        nodes = np.zeros(self.grid.size, dtype=bool)
+        nodes.ravel()[self.node[stale]] = True
+        for axis, far in enumerate((high, wide)):
+            nodes = maximum_filter1d(nodes, 2 * far + 1, axis, mode="constant")
+        return np.nonzero(nodes.ravel()[self.node])[0]
 
     def _stale(self, changed: Indices | None) -> NDArray[np.bool_]:
         """Hats whose image under K may differ because of particles with changed bonds."""
@@ -292,7 +314,7 @@ class _Probe:
         self.particles = np.zeros(0, dtype=np.uint64)
         operator.clear()
 
-    def light(self, lit: NDArray[np.bool_]) -> None:
+    def light(self, lit: Indices) -> None:
         """Turn to other hats; their rows of windows do not overlap."""
         hats, operator = self.hats, self.hats.operator
         self.lit = lit

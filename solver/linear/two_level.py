@@ -21,6 +21,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
+from scipy.linalg import eigvalsh_tridiagonal
 from scipy.sparse.linalg import LinearOperator, splu
 
 from ..arrays import Array, Float
@@ -36,6 +37,11 @@ from .smoother import Smoother, size_of
 # factorisation stays small beside the products.
 _COARSENING = {1: 6, 2: 8, 3: 8}
 LARGEST_COARSE = 60_000
+# Determinant of a diagonal block over the power of its size from which on cofactors invert it.
+_SOUND = 1e-6
+# Steps of Lanczos that find the largest eigenvalue within a tenth, and the share of it that
+# is left of a Krylov space which is the whole one.
+_LANCZOS, _EXHAUSTED = 8, 1e-10
 # Coarse functions can be dependent in narrow bodies; their null directions carry no residual.
 _REGULARISATION = 1e-11
 
@@ -72,20 +78,61 @@ def _inverse(operator: BondOperator, blocks: Array, which: NDArray[np.int64] | N
     """Inverses of symmetric blocks (n, c, c) as (c, c, n)."""
     if not len(blocks):
         return np.zeros((operator.components, operator.components, 0))
-    values, vectors = np.linalg.eigh(blocks)
+    found = np.empty((operator.components, operator.components, len(blocks)))
+    doubtful = _invert(np.ascontiguousarray(np.moveaxis(blocks, 0, 2)), found)
+    if not len(doubtful):
+        return found
+    values, vectors = np.linalg.eigh(blocks[doubtful])
     with np.errstate(invalid="ignore", divide="ignore"):
         relative = values[:, 0] / np.abs(values).max(axis=1)
     if not relative.min() > 1e-12:
         where = "a bulk particle"
         if which is not None:
-            x, y = operator.bonds.lattice.places[operator.active[which[np.argmin(relative)]]]
+            worst = doubtful[np.argmin(relative)]
+            x, y = operator.bonds.lattice.places[operator.active[which[worst]]]
             where = f"the particle at ({x:.4g}, {y:.4g})"
         raise NegativeCurvatureError(
             f"{where} is a mechanism: the stiffness of its own bonds is singular or negative "
             f"(too few bonds are left). Hold it or remove it"
         )
     # einsum keeps a fixed order of sums, whatever BLAS does.
-    return np.ascontiguousarray(np.einsum("pij,pj,pkj->ikp", vectors, 1.0 / values, vectors))
+    found[:, :, doubtful] = np.einsum("pij,pj,pkj->ikp", vectors, 1.0 / values, vectors)
+    return found
+
+
+def _invert(blocks: Array, out: Array) -> NDArray[np.int64]:
+    """Inverses of symmetric blocks (c, c, n) by cofactors; returns those that are left.
+
+    What is left is not positive definite, or nearly not: the smallest eigenvalue is at least
+    det/|λ|_max^(c − 1).
+    """
+    c = len(blocks)
+    if c == 1:
+        minors, cofactors = [blocks[0, 0]], np.ones_like(blocks)
+    elif c == 2:
+        (a, b), (_, d) = blocks
+        minors, cofactors = [a, a * d - b * b], np.array([[d, -b], [-b, a]])
+    else:
+        (a, b, e), (_, d, f), (_, _, g) = blocks
+        cofactors = np.array(
+            [
+                [d * g - f * f, e * f - b * g, b * f - d * e],
+                [e * f - b * g, a * g - e * e, b * e - a * f],
+                [b * f - d * e, b * e - a * f, a * d - b * b],
+            ]
+        )
+        minors = [
+            a,
+            cofactors[2, 2],
+            a * cofactors[0, 0] + b * cofactors[0, 1] + e * cofactors[0, 2],
+        ]
+    size = np.sqrt((blocks * blocks).sum(axis=(0, 1)))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        np.divide(cofactors, minors[-1], out=out)
+        sound = minors[-1] > _SOUND * size**c
+    for minor in minors[:-1]:
+        sound &= minor > 0.0
+    return np.nonzero(~sound)[0]
 
 
 class TwoLevel(LinearOperator):
@@ -181,13 +228,7 @@ class TwoLevel(LinearOperator):
         if self.operator.moduli.non_negative and self.operator.ended_stiffness is None:
             return 2.0
         # A deterministic start with components along everything.
-        vector = np.cos(1.7 * np.arange(self.shape[0]))
-        size = 1.0
-        for _ in range(20):
-            vector = self.jacobi.matvec(self.operator.matvec(vector))
-            size = float(np.linalg.norm(vector))
-            vector /= size
-        return max(2.0, 1.2 * size)
+        return max(2.0, 1.2 * largest_ritz(self.operator, self.jacobi, _LANCZOS))
 
     def _correction(self, residual: Float) -> Float:
         """The coarse grid's answer to a residual, on the hats."""
@@ -223,6 +264,26 @@ def _grid(operator: BondOperator) -> tuple[int, CoarseGrid]:
         if operator.shape[0] <= LARGEST_COARSE * grid.cells:
             return coarsening, grid
         coarsening += 1
+
+
+def largest_ritz(operator: LinearOperator, jacobi: LinearOperator, steps: int) -> float:
+    """Largest λ(D⁻¹K) of a Krylov space, from below: Lanczos in the product of D."""
+    force = np.cos(1.7 * np.arange(operator.shape[0]))
+    move, before = jacobi.matvec(force), np.zeros_like(force)
+    diagonal: list[float] = []
+    beside: list[float] = []
+    for _ in range(steps):
+        # `force` is D times `move`, whose size in D becomes one.
+        size = float(np.sqrt(max(force @ move, 0.0)))
+        if diagonal and size <= _EXHAUSTED * max(diagonal):
+            break
+        force, move = force / size, move / size
+        image = operator.matvec(move)
+        diagonal.append(float(move @ image))
+        beside.append(size)
+        force, before = image - diagonal[-1] * force - size * before, force
+        move = jacobi.matvec(force)
+    return float(eigvalsh_tridiagonal(diagonal, beside[1:])[-1])
 
 
 def same_unknowns(one: BondOperator, other: BondOperator) -> bool:

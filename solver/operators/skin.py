@@ -48,6 +48,8 @@ _BEND = 1.2
 # Radius of curvature (cells) below which the bump would see round the curve: no membrane there,
 # the whole of it from twice that on.
 _TIGHT = 5.0
+# Cells (and shares) within which edges are straight, and see the same.
+_STRAIGHT = 1e-10
 # Distance (cells) within which a line of particles lies on the edge.
 _ON_EDGE = 1e-7
 # Thickness (cells) that is rounding, or the little by which a line on the very edge lies inside.
@@ -185,17 +187,19 @@ def _lacking(
     # Who owns the edge has the line of particles on it: the body, or the hole whose rim it is.
     owned = np.ones(len(edges), bool) if outline.owned is None else outline.owned[edges]
     outside = np.where(owned, _ON_EDGE, -_ON_EDGE)[:, None] * outline.outward[edges]
+    centres, chains_in_cells = 0.5 * (first + last) / h + outside, chains / h + outside[:, None]
+    one, back = _alike(centres, chains_in_cells, length, summed)
     lack = _lack(
-        0.5 * (first + last) / h + outside,
-        chains / h + outside[:, None],
-        length,
+        centres[one],
+        chains_in_cells[one],
+        length[one],
         directions.step.astype(np.float64),
         0.5,
-        summed,
+        summed[one],
         _BUMP,
         _BUMP * _REACH,
         _FINE,
-    )
+    )[back]
     # Half a strip at most lacks anywhere. On short edges what is too much could take more stiffness
     # than their nodes have.
     lack[np.abs(lack) < _NONE] = 0.0
@@ -205,6 +209,27 @@ def _lacking(
     lack[steps.sum(axis=1) < _TIGHT * h] = 0.0
     least = -0.5 * np.minimum(1.0, outline.length[edges] / (2.0 * h)) if short else -0.5
     return np.asarray(round_enough * np.clip(lack, least, 0.5))
+
+
+def _alike(
+    centres: Array, chains: Array, counts: Indices, shares: Array
+) -> tuple[Indices, Indices]:
+    """One of all edges that see the same, and which of those each edge is like.
+
+    Along a straight edge what is seen repeats as the lattice does.
+    """
+    ends = chains[:, 0], chains[np.arange(len(chains)), counts - 1]
+    along = (ends[1] - ends[0]) / np.hypot(*(ends[1] - ends[0]).T)[:, None]
+    away = chains - centres[:, None]
+    off = np.abs(away[..., 0] * along[:, None, 1] - away[..., 1] * along[:, None, 0])
+    off[np.arange(chains.shape[1]) >= counts[:, None]] = 0.0
+    # Bent ones are like no other.
+    own = np.where(off.max(axis=1) < _STRAIGHT, -1, np.arange(len(chains)))
+    seen = np.column_stack([(centres + 0.25) % 1.0, along, shares, own])
+    _, one, back = np.unique(
+        np.rint(seen / _STRAIGHT), axis=0, return_index=True, return_inverse=True
+    )
+    return one, back.ravel()
 
 
 def _radius(outline: Outline, edges: Indices) -> Array:

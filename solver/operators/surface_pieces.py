@@ -262,3 +262,62 @@ def place(rows: Array, ends: list[tuple[Indices, Array]], count: int) -> sparse.
                 j.append(b * count + place)
     entries = np.concatenate(values), (np.concatenate(i), np.concatenate(j))
     return sparse.csr_array(entries, shape=(strains * size, components * count))
+
+
+def mutual(weight: Array, one: Array, other: Array) -> Array:
+    """Σ_a w_a r_a sᵀ_a of bonds, shape (c, c, k), for rows r and s of shape (strains, c, k)."""
+    return np.asarray(np.einsum("abk,ack->bck", weight[:, None] * one, other))
+
+
+def of_edges(ended: EndedBonds, nodes: Indices, blocks: Array, count: int) -> sparse.csc_array:
+    """K_ss of bonds that end between `nodes` (k, 2): all that end at one edge as one.
+
+    Parameters
+    ----------
+    blocks : ndarray, shape (c, c, k)
+        `mutual` stiffness of the bonds' surface ends.
+    count : int
+        Of all nodes.
+    """
+    c, edges = len(blocks), len(ended.outline.edges)
+    at = np.zeros((edges, 2), dtype=np.int64)
+    at[ended.edge] = nodes
+    some = np.nonzero(np.bincount(ended.edge, minlength=edges))[0]
+    ends = at[some].T
+    share = 1.0 - ended.position, ended.position
+    data = np.empty((2, 2, c, c, len(some)))
+    for i, j, a, b in np.ndindex(2, 2, c, c):
+        weights = share[i] * share[j] * blocks[a, b]
+        data[i, j, a, b] = np.bincount(ended.edge, weights, minlength=edges)[some]
+    component = count * np.arange(c)[:, None]
+    rows = np.broadcast_to((ends[:, None] + component)[:, None, :, None], data.shape)
+    columns = np.broadcast_to((ends[:, None] + component)[None, :, None], data.shape)
+    entries = data.ravel(), (rows.ravel(), columns.ravel())
+    return sparse.coo_array(entries, shape=(c * count,) * 2).tocsc()
+
+
+def joined(
+    ended: EndedBonds, nodes: Indices, here: Indices, blocks: Array, count: tuple[int, int]
+) -> sparse.csr_array:
+    """K_sp of bonds between particles `here` (k,) and edges: all between the same two as one.
+
+    Parameters
+    ----------
+    nodes, blocks
+        See `of_edges`; the blocks are those of surface and particle.
+    count : pair of int
+        Of all particles and of all nodes.
+    """
+    c, (particles, every) = len(blocks), count
+    pair, first, of = np.unique(
+        ended.edge * particles + here, return_index=True, return_inverse=True
+    )
+    share = 1.0 - ended.position, ended.position
+    data = np.empty((2, c, c, len(pair)))
+    for i, a, b in np.ndindex(2, c, c):
+        data[i, a, b] = np.bincount(of, share[i] * blocks[a, b], minlength=len(pair))
+    component = np.arange(c)[:, None]
+    rows = np.broadcast_to((nodes[first].T[:, None] + every * component)[:, :, None], data.shape)
+    columns = np.broadcast_to((here[first] + particles * component)[None, None], data.shape)
+    entries = data.ravel(), (rows.ravel(), columns.ravel())
+    return sparse.coo_array(entries, shape=(c * every, c * particles)).tocsr()

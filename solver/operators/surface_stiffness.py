@@ -20,11 +20,12 @@ from .surface_pieces import (
     BondStrains,
     Layers,
     Membrane,
-    between,
     chord_strains,
     interface_layers,
+    joined,
     membrane,
-    place,
+    mutual,
+    of_edges,
 )
 
 # Ratio of pivots below which the nodes' stiffness counts as singular.
@@ -74,11 +75,8 @@ class SurfaceStiffness:
         rule = BondStrains.of(ended, family, moduli)
         whole = family.length[ended.offset]
         particle = rule.rows(-1.0, 0.5 * whole)
-        strain_p = place(particle, [(here, np.ones_like(length))], count[0])
         surface = rule.rows(1.0, length - 0.5 * whole)
-        strain_s = place(surface, between(number[ends], ended.position), count[1])
         self._ends = particle, surface
-        scaled = sparse.diags_array(rule.weight.ravel()) @ strain_s
         #: Diagonal entries of the particles in the operator's order, shape (entries, p).
         self.own: Array = np.array(
             [
@@ -93,10 +91,12 @@ class SurfaceStiffness:
         #: Values of all nodes for those that are free of each other, shape (components·s, free).
         self._spread = self._sharing(moduli)
         #: K_sp, shape (components·s, components·p).
-        self.coupling: sparse.csr_array = sparse.csr_array(scaled.T @ strain_p)
+        self.coupling: sparse.csr_array = joined(
+            ended, number[ends], here, mutual(rule.weight, surface, particle), count
+        )
         #: K_ps.
         self.transposed: sparse.csr_array = sparse.csr_array(self.coupling.T)
-        matrix = sparse.csc_array(strain_s.T @ scaled)
+        matrix = of_edges(ended, number[ends], mutual(rule.weight, surface, surface), count[1])
         if (chords := chord_strains(ended, family, moduli, number)) is not None:
             weight, _, strain = chords
             matrix = matrix + sparse.csc_array(strain.T @ sparse.diags_array(weight) @ strain)

@@ -26,16 +26,8 @@ _ROUNDING = 1e-14
 def parts(bonds: Bonds) -> tuple[int, NDArray[np.int32]]:
     """Number of connected parts and the part of every particle, shape (N,)."""
     lattice = bonds.lattice
-    if not len(bonds.special) or bonds.strengths.min() > 0:
-        # Neighbours that the family joins directly; more bonds can only join more.
-        nearest = np.zeros((3, 3))
-        nearest[1, 1] = 1
-        for dx, dy in bonds.family.offsets:
-            if max(abs(dx), abs(dy)) == 1:
-                nearest[1 + dy, 1 + dx] = 1
-        _, count = ndimage.label(lattice.mask, structure=nearest)
-        if count == 1:
-            return 1, np.zeros(lattice.count, dtype=np.int32)
+    if _plainly_one(bonds):
+        return 1, np.zeros(lattice.count, dtype=np.int32)
     numbers = lattice.number()
     rows, columns = lattice.rows_columns
     family = bonds.family
@@ -70,6 +62,36 @@ def parts(bonds: Bonds) -> tuple[int, NDArray[np.int32]]:
             if count == 1:
                 break
     return count, labels
+
+
+def _plainly_one(bonds: Bonds) -> bool:
+    """Whether bonds to the nearest neighbours alone join all particles."""
+    lattice, family, special = bonds.lattice, bonds.family, bonds.special
+    sound = lattice.mask
+    if len(special) and bonds.strengths.min() <= 0:
+        sound = sound.copy()
+        sound[tuple(axis[special] for axis in lattice.rows_columns)] = False
+    else:
+        special = special[:0]
+    # Neighbours that the family joins directly; more bonds can only join more.
+    near = np.nonzero(np.abs(family.offsets).max(axis=1) == 1)[0]
+    nearest = np.zeros((3, 3))
+    nearest[1, 1] = 1
+    nearest[tuple(1 + family.offsets[near, ::-1].T)] = 1
+    number, count = ndimage.label(sound, structure=nearest)
+    if count != 1 or not len(special):
+        return bool(count == 1)
+    # Particles with bonds of their own one by one, the others as one.
+    place = np.where(number > 0, len(special), -1)
+    rows, columns = (axis[special] for axis in lattice.rows_columns)
+    place[rows, columns] = np.arange(len(special))
+    dx, dy = family.offsets[near].T[:, :, None]
+    bond, start = np.nonzero(bonds.strengths[near] != 0)
+    end = place[(rows + dy)[bond, start], (columns + dx)[bond, start]]
+    graph = sparse.coo_array(
+        (np.ones(len(start), np.int8), (start, end)), shape=(len(special) + 1,) * 2
+    )
+    return bool(connected_components(graph, directed=False)[0] == 1)
 
 
 def unheld(

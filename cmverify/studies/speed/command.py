@@ -14,6 +14,12 @@ from cmverify.console import refuse
 _RESOLUTION = {Level.QUICK: 60, Level.STANDARD: 120, Level.PAPER: 120}
 #: Cells along the side of the square whose modes are sought.
 _MODES = {Level.QUICK: 28, Level.STANDARD: 112, Level.PAPER: 112}
+#: Errors to which a calibrated tip and a graded mesh are timed.
+_TIP_ERRORS = {
+    Level.QUICK: (4e-4,),
+    Level.STANDARD: (4e-4, 1e-4),
+    Level.PAPER: (4e-4, 1e-4),
+}
 _LADDER = {
     Level.QUICK: (30, 60, 120),
     Level.STANDARD: (30, 60, 120, 240),
@@ -75,9 +81,19 @@ def speed(
             verdicts.of_solvers if judged else None,
         ),
         (
+            "Whole solve, heat",
+            lambda: measure.heat(resolution),
+            verdicts.of_heat if judged else None,
+        ),
+        (
             "To an error of 1e-6, smooth field in the disc",
             accuracy.to_an_error,
             verdicts.of_accuracy if judged else None,
+        ),
+        (
+            "To an error at a crack tip, tips calibrated before",
+            lambda: accuracy.at_a_tip(_TIP_ERRORS[level]),
+            None,
         ),
         (
             "Natural modes",

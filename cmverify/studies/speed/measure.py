@@ -9,11 +9,12 @@ that a threaded code gains nothing by being threaded.
 from __future__ import annotations
 
 import resource
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from importlib import import_module
 from importlib.util import find_spec
+from itertools import chain
 from statistics import median
 from time import perf_counter, process_time
 from typing import Any, get_args
@@ -29,7 +30,7 @@ from cmverify.studies.assembled import conjugate_gradients
 from cmverify.studies.speed import peers
 from cmverify.studies.speed.scenes import crack_tip, kernel_scenes, static_scenes
 from references.analytic import lekhnitskii
-from solver import Discretisation
+from solver import Discretisation, Scene
 from solver.analyses.statics import solve
 from solver.bonds import Surface
 from solver.linear import Task, TwoLevel, method
@@ -259,80 +260,97 @@ def surfaces(resolution: int = 60, tolerance: float = 1e-8) -> list[Timing]:
     return rows
 
 
-def _row(name: str, cpu: float, wall: float, base: float, **more: Any) -> Timing:
-    return Timing(name, {"cpu_s": cpu, "wall_s": wall, "slower": cpu / base, **more})
-
-
-def solvers(resolution: int = 120, tolerance: float = 1e-8, repeats: int = 3) -> list[Timing]:
-    """The whole static solve against assembled alternatives, to the same residual.
+def solvers(
+    resolution: int = 120,
+    tolerance: float = 1e-8,
+    repeats: int = 3,
+    scene: Scene | None = None,
+) -> list[Timing]:
+    """The whole static solve against assembled alternatives, to the same residual, in turns.
 
     Set-up and assembly are included, compilation is not. PARDISO (`pypardiso`, extra ``bench``)
     and algebraic multigrid (`peers`) appear where they are installed.
 
+    Parameters
+    ----------
+    scene : Scene, optional
+        Solved instead of the crack tip.
+
     Returns
     -------
     list of Timing
-        Values: ``cpu_s`` (all threads), ``wall_s``, ``slower`` (CPU seconds over the bond
-        solver's), ``iterations``, ``residual``; of multigrid also the ratio without its assembly.
+        Medians: ``cpu_s`` (all threads), ``wall_s``, ``slower`` (CPU seconds over the bond solver's
+        of the same round), ``iterations``, ``residual``; of assembled matrices also the time that
+        they took and the ratio without it.
     """
-    scene = crack_tip(resolution)
+    scene = crack_tip(resolution) if scene is None else scene
     scene.solve(tolerance)
-    threads = numba.get_num_threads()
-    rows: list[Timing] = []
-    base = 0.0
-    try:
-        # One thread first: CPU seconds then hold no waiting for other threads.
-        for count in dict.fromkeys((1, threads)):
-            numba.set_num_threads(count)
-            runs = []
-            for _ in range(repeats):
-                cpu, wall = process_time(), perf_counter()
-                statistics = scene.solve(tolerance).statistics
-                runs.append((process_time() - cpu, perf_counter() - wall))
-            cpu, wall = median(r[0] for r in runs), median(r[1] for r in runs)
-            base = base or cpu
-            name = f"bond solver, two-level CG, {count} thread{'s' * (count > 1)}"
-            counts = {"iterations": statistics.iterations, "residual": statistics.residual}
-            rows.append(_row(name, cpu, wall, base, **counts))
-    finally:
-        numba.set_num_threads(threads)
     problem = scene.discretise()
+    rhs = problem.right_hand_side()
+    rounds: dict[str, list[peers.Run]] = {}
+    # One thread of BLAS: CPU seconds then hold no waiting for others.
     with threadpool_limits(limits=1, user_api="blas"):
-        rows.append(_scipy_cg(problem, tolerance, base))
-        other = _pardiso(problem, base)
-        rows += [other] if other else []
-        for run in peers.runs(problem, tolerance):
-            rows.append(
-                _row(
-                    run.name,
-                    run.assembly + run.solving,
-                    run.wall,
-                    base,
-                    iterations=run.iterations,
-                    residual=_residual(problem, run.x, problem.right_hand_side()),
-                    assembly_s=run.assembly,
-                    **{"matrix given ÷ ours": run.solving / base},
-                )
+        for _ in range(repeats):
+            every = (
+                _own(scene, tolerance),
+                _scipy_cg(problem, tolerance),
+                _pardiso(problem),
+                peers.runs(problem, tolerance),
             )
+            for run in chain.from_iterable(every):
+                rounds.setdefault(run.name, []).append(run)
+    base = next(iter(rounds.values()))
+    rows = []
+    for name, runs in rounds.items():
+        values: dict[str, Any] = {
+            "cpu_s": median(run.cpu for run in runs),
+            "wall_s": median(run.wall for run in runs),
+            "slower": median(run.cpu / own.cpu for run, own in zip(runs, base, strict=True)),
+            "iterations": runs[-1].iterations,
+            "residual": float(
+                np.linalg.norm(rhs - problem.operator.matvec(runs[-1].x)) / np.linalg.norm(rhs)
+            ),
+        }
+        if runs[-1].assembly:
+            values["assembly_s"] = median(run.assembly for run in runs)
+            values["matrix given ÷ ours"] = median(
+                run.solving / own.cpu for run, own in zip(runs, base, strict=True)
+            )
+        rows.append(Timing(name, values))
     return rows
 
 
-def _scipy_cg(problem: Discretisation, tolerance: float, base: float) -> Timing:
-    """SciPy CG with block Jacobi on the CSR matrix, assembly included."""
-    cpu, wall = process_time(), perf_counter()
+def heat(resolution: int = 120, tolerance: float = 1e-8, repeats: int = 3) -> list[Timing]:
+    """`solvers` for an isotropic conductor, one unknown a particle."""
+    return solvers(resolution, tolerance, repeats, static_scenes(resolution)["heat, isotropic"])
+
+
+def _own(scene: Scene, tolerance: float) -> Iterator[peers.Run]:
+    """The bond solver from the scene on, on one thread and on all."""
+    threads = numba.get_num_threads()
+    for count in dict.fromkeys((1, threads)):
+        numba.set_num_threads(count)
+        try:
+            wall, cpu = perf_counter(), process_time()
+            found = scene.solve(tolerance)
+            spent, taken = process_time() - cpu, perf_counter() - wall
+        finally:
+            numba.set_num_threads(threads)
+        name = f"bond solver, two-level CG, {count} thread{'s' * (count > 1)}"
+        x = found.unknowns[:, found.discretisation.operator.active].ravel()
+        yield peers.Run(name, x, found.statistics.iterations, 0.0, spent, taken)
+
+
+def _scipy_cg(problem: Discretisation, tolerance: float) -> Iterator[peers.Run]:
+    """SciPy CG with block Jacobi on the CSR matrix."""
+    wall, cpu = perf_counter(), process_time()
     matrix = to_csr(problem.operator)
-    assembled = process_time() - cpu
+    assembled = process_time()
     x, iterations = conjugate_gradients(problem, matrix, tolerance, 5000)
-    cpu, wall = process_time() - cpu, perf_counter() - wall
-    return _row(
-        "SciPy CG, block Jacobi, CSR",
-        cpu,
-        wall,
-        base,
-        iterations=iterations,
-        residual=_residual(problem, x, problem.right_hand_side()),
-        assembly_s=assembled,
-    )
+    end = process_time()
+    taken = perf_counter() - wall
+    name = "SciPy CG, block Jacobi, CSR"
+    yield peers.Run(name, x, iterations, assembled - cpu, end - assembled, taken)
 
 
 def pardiso(matrix: sparse.sparray) -> Callable[[Array], Array]:
@@ -346,30 +364,18 @@ def pardiso(matrix: sparse.sparray) -> Callable[[Array], Array]:
     return lambda right: np.asarray(solver.solve(upper, right))
 
 
-def _pardiso(problem: Discretisation, base: float) -> Timing | None:
-    """MKL PARDISO through pypardiso, assembly included; None where it is not installed."""
+def _pardiso(problem: Discretisation) -> Iterator[peers.Run]:
+    """MKL PARDISO through pypardiso, where it is installed."""
     if find_spec("pypardiso") is None:
-        return None
+        return
     rhs = problem.right_hand_side()
-    cpu, wall = process_time(), perf_counter()
+    wall, cpu = perf_counter(), process_time()
     matrix = to_csr(problem.operator)
-    assembled = process_time() - cpu
+    assembled = process_time()
     x = pardiso(matrix)(rhs)
-    cpu, wall = process_time() - cpu, perf_counter() - wall
-    return _row(
-        "MKL PARDISO",
-        cpu,
-        wall,
-        base,
-        iterations=0,
-        residual=_residual(problem, x, rhs),
-        assembly_s=assembled,
-    )
-
-
-def _residual(problem: Discretisation, x: Array, rhs: Array) -> float:
-    defect = rhs - problem.operator.matvec(x)
-    return float(np.linalg.norm(defect) / np.linalg.norm(rhs))
+    end = process_time()
+    taken = perf_counter() - wall
+    yield peers.Run("MKL PARDISO", x, 0, assembled - cpu, end - assembled, taken)
 
 
 def growth(resolutions: tuple[int, ...], tolerance: float = 1e-8) -> list[Timing]:

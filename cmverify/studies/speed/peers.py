@@ -25,9 +25,9 @@ Solver = Callable[[sparse.csr_array, int, Array, Array, float], tuple[Array, int
 _MOST = 2000
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Run:
-    """What a peer took for one system.
+    """What a solver took for one system.
 
     Attributes
     ----------
@@ -45,6 +45,11 @@ class Run:
     assembly: float
     solving: float
     wall: float
+
+    @property
+    def cpu(self) -> float:
+        """CPU seconds of all."""
+        return self.assembly + self.solving
 
 
 def runs(problem: Discretisation, tolerance: float) -> Iterator[Run]:

@@ -47,6 +47,15 @@ def of_solvers(rows: list[Timing]) -> list[Verdict]:
     ]
 
 
+def of_heat(rows: list[Timing]) -> list[Verdict]:
+    """An eighth of the CPU seconds of PETSc's multigrid where every particle has one unknown."""
+    return [
+        _at_least(f"heat, {row.name}: CPU seconds ÷ ours", row.values["slower"], 8.0)
+        for row in rows
+        if row.name.startswith("PETSc")
+    ]
+
+
 def of_preconditioner(rows: list[Timing], ratios: bool = True) -> list[Verdict]:
     """Single precision costs no iteration, and double precision time (with `ratios`)."""
     single, double = (row.values for row in rows)

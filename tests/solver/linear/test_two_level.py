@@ -4,11 +4,12 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy.sparse.linalg import aslinearoperator
 
 from references.analytic import lekhnitskii
 from solver import ConductivityTensor, Crack, ElasticTensor, Scene, Support, disc
 from solver.analyses.statics import solve
-from solver.linear import BlockJacobi, Task, TwoLevel, method
+from solver.linear import BlockJacobi, Task, TwoLevel, method, two_level
 from solver.operators.assembled import to_csr
 
 VOIGT = np.array([[1, 0.2, 0.1], [0.2, 0.8, 1 / 6], [0.1, 1 / 6, 1 / 3]])
@@ -59,6 +60,37 @@ def test_symmetric_positive_and_within_the_smoother_s_bound(partly: bool) -> Non
     # The rigorous bound on which the smoother rests.
     jacobi = _dense(BlockJacobi(operator), size)
     assert np.linalg.eigvals(jacobi @ stiffness).real.max() <= 2.0 + 1e-10
+
+
+@pytest.mark.parametrize("size", [1, 2, 3])
+def test_inverses_of_blocks_and_those_that_are_left(size: int) -> None:
+    rng = np.random.default_rng(size)
+    half = rng.normal(size=(200, size, size))
+    blocks = half @ half.transpose(0, 2, 1)
+    blocks[:4], blocks[4:8], blocks[8:12] = -blocks[:4], 0.0, np.ones((size, size))
+    blocks[8:12] += 1e-9 * np.eye(size)
+    found = np.empty((size, size, 200))
+    left = two_level._invert(np.ascontiguousarray(np.moveaxis(blocks, 0, 2)), found)
+    values = np.linalg.eigvalsh(blocks)
+    assert set(left) >= set(range(8 if size == 1 else 12))
+    sound = np.setdiff1d(np.arange(200), left)
+    assert len(sound) > 100
+    assert (values[sound, 0] > 1e-7 * values[sound, -1]).all()
+    product = np.einsum("pij,jkp->pik", blocks[sound], found[:, :, sound])
+    np.testing.assert_allclose(product, np.broadcast_to(np.eye(size), product.shape), atol=1e-7)
+
+
+def test_the_largest_eigenvalue_is_found_from_below() -> None:
+    scene = dataclasses.replace(_crack_tip(12), surface="extrapolated", m=3)
+    operator = scene.discretise().operator
+    jacobi = BlockJacobi(operator)
+    size = operator.shape[0]
+    largest = np.linalg.eigvals(_dense(jacobi, size) @ to_csr(operator).toarray()).real.max()
+    found = two_level.largest_ritz(operator, jacobi, 8)
+    assert 0.9 * largest < found <= largest * (1 + 1e-10)
+    # A Krylov space that is the whole one.
+    exact = aslinearoperator(np.diag([1.0, 2.0, 5.0])), aslinearoperator(np.eye(3))
+    assert two_level.largest_ritz(*exact, 8) == pytest.approx(5.0, rel=1e-12)
 
 
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e12])

@@ -73,6 +73,23 @@ def test_rows_beside_a_straight_edge_by_hand(material, shift):
     np.testing.assert_allclose(found[~lower & ~upper], 0, atol=1e-6)
 
 
+def test_edges_that_see_the_same_are_measured_once(monkeypatch):
+    """Straight edges as the lattice repeats; bent ones, and each alone, give the same."""
+    body = rectangle(32, 20) - disc(6.0) - rectangle(3.0, 2.0, (11.0, 5.0), 0.3)
+    measured = []
+    right = solver.operators.skin._lack
+
+    def counting(centres, *given):
+        measured.append(len(centres))
+        return right(centres, *given)
+
+    monkeypatch.setattr(solver.operators.skin, "_lack", counting)
+    outline, found, family, moduli = skin(body, 3, ElasticTensor(FIG_7))
+    alone = [thickness(outline, family, moduli, np.array([k]))[0] for k in range(len(found))]
+    assert measured[0] < 0.6 * len(found)
+    np.testing.assert_allclose(found, alone, atol=1e-8 * np.abs(found).max())
+
+
 def test_rows_on_the_very_edge_belong_to_the_body():
     # As its particles do: half a strip too much on every side.
     outline, found, _, _ = skin(rectangle(21, 21), 3, ElasticTensor(FIG_7))

@@ -7,9 +7,14 @@ from solver import ConductivityTensor, ElasticTensor, Inclusion, Scene, disc, re
 from solver.operators.surface_pieces import (
     BondStrains,
     Layers,
+    between,
     chord_strains,
     interface_layers,
+    joined,
     membrane,
+    mutual,
+    of_edges,
+    place,
 )
 from solver.problem import Discretisation
 from tests.solver.bodies import DISC, FIG_7
@@ -46,6 +51,27 @@ def test_a_bond_that_ends_is_stretched_like_a_whole_one():
     np.testing.assert_allclose(
         stretch, np.einsum("ki,ij,kj->k", n, slope, n) * ended.length / longest
     )
+
+
+@pytest.mark.parametrize("material", [ElasticTensor(FIG_7), ConductivityTensor(DISC)])
+def test_stiffness_edge_by_edge_is_that_of_the_strains_of_all_bonds(material):
+    body, surface, _ = built(material)
+    ended, family = surface.ended, body.family
+    rule = BondStrains.of(ended, family, body.moduli)
+    whole = family.length[ended.offset]
+    ends = rule.rows(-1.0, 0.5 * whole), rule.rows(1.0, ended.length - 0.5 * whole)
+    nodes = surface.number[ended.outline.edges[ended.edge]]
+    here = np.searchsorted(surface.particles, ended.particle)
+    count = len(surface.particles), len(surface.nodes)
+    at_p = place(ends[0], [(here, np.ones(len(here)))], count[0]).toarray()
+    at_s = place(ends[1], between(nodes, ended.position), count[1]).toarray()
+    weight = rule.weight.ravel()[:, None]
+    found = of_edges(ended, nodes, mutual(rule.weight, ends[1], ends[1]), count[1]).toarray()
+    wanted = at_s.T @ (weight * at_s)
+    np.testing.assert_allclose(found, wanted, atol=1e-13 * np.abs(wanted).max())
+    found = joined(ended, nodes, here, mutual(rule.weight, ends[1], ends[0]), count).toarray()
+    wanted = at_s.T @ (weight * at_p)
+    np.testing.assert_allclose(found, wanted, atol=1e-13 * np.abs(wanted).max())
 
 
 @pytest.mark.parametrize("about", [(0.0, 0.0), (0.4, -0.3)])
@@ -95,8 +121,8 @@ def test_layers_take_no_more_of_a_node_than_their_share():
     assert (borne.weight <= 0).all()
     diagonal = np.abs((spread.T @ plain @ spread).diagonal())
     count = softer.weight.shape[1]
-    for place, weight in enumerate(borne.weight):
-        rows = softer.strain[place * count : (place + 1) * count]
+    for k, weight in enumerate(borne.weight):
+        rows = softer.strain[k * count : (k + 1) * count]
         for edge in range(count):
             # One strain of one edge; the same of its twin is among them, and counts with it.
             taken = np.asarray((rows[[edge]] ** 2 @ spread).todense())[0] * -weight[edge]
