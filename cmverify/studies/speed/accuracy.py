@@ -15,8 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from cmverify.cases import crack_tip, disc
+from cmverify.cases import disc
 from cmverify.cases.common import adapters
+from cmverify.cases.crack_tip.measure import displacement_error
+from cmverify.cases.crack_tip.problem import Problem, scene_of
 from cmverify.judge.norms import relative_l2
 from cmverify.studies.speed.measure import Timing
 
@@ -86,7 +88,7 @@ def at_a_tip(errors: Sequence[float] = (4e-4, 1e-4), rounds: int = 7) -> list[Ti
     spacing and every body with such a tip.
     """
     rows = []
-    for mode, problem in (("I", crack_tip.Problem(1.0, 0.0)), ("II", crack_tip.Problem(0.0, 1.0))):
+    for mode, problem in (("I", Problem(1.0, 0.0)), ("II", Problem(0.0, 1.0))):
         ways = {
             f"mode {mode}, bond/calibrated tip": partial(tip_bonds, problem),
             f"mode {mode}, fem/P2 graded": partial(tip_elements, problem),
@@ -97,21 +99,17 @@ def at_a_tip(errors: Sequence[float] = (4e-4, 1e-4), rounds: int = 7) -> list[Ti
     return rows
 
 
-def tip_bonds(
-    problem: crack_tip.Problem, n: int
-) -> tuple[Callable[[], Any], Callable[[Any], float]]:
+def tip_bonds(problem: Problem, n: int) -> tuple[Callable[[], Any], Callable[[Any], float]]:
     """What solves by bonds with a calibrated tip at spacing a/n, and what judges that."""
 
     def solve() -> Any:
-        scene = crack_tip.scene_of(problem, "lattice", "extrapolated", n, "calibrated")
+        scene = scene_of(problem, "lattice", "extrapolated", n, "calibrated")
         return scene.solve(tolerance=RESIDUAL)
 
-    return solve, partial(crack_tip.displacement_error, problem)
+    return solve, partial(displacement_error, problem)
 
 
-def tip_elements(
-    problem: crack_tip.Problem, n: int
-) -> tuple[Callable[[], Any], Callable[[Any], float]]:
+def tip_elements(problem: Problem, n: int) -> tuple[Callable[[], Any], Callable[[Any], float]]:
     """What solves by scikit-fem on a mesh that is graded towards the tip, and what judges that."""
     from references.fem import elasticity, mesh
 

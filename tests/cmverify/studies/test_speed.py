@@ -42,6 +42,16 @@ def test_both_get_to_the_error_with_the_coarsest_that_does() -> None:
     assert [v.passed for v in verdicts.of_accuracy([ours, slow])] == [False]
 
 
+def test_calibrated_tips_and_graded_meshes_get_to_one_error(monkeypatch) -> None:
+    monkeypatch.setattr(accuracy, "TIP_RESOLUTIONS", (20, 25))
+    rows = accuracy.at_a_tip((2e-3,), rounds=1)
+    assert [row.name.split(",")[:2] for row in rows] == [
+        ["mode I", " bond/calibrated tip"], ["mode I", " fem/P2 graded"],
+        ["mode II", " bond/calibrated tip"], ["mode II", " fem/P2 graded"],
+    ]  # fmt: skip
+    assert all(row.values["error"] <= 2e-3 for row in rows)
+
+
 def test_peers_know_the_rigid_motions_and_solve_the_same_system() -> None:
     problem = crack_tip(20).discretise()
     free = Discretisation.of(replace(crack_tip(12), supports=[]), free=True).operator
@@ -112,6 +122,11 @@ def test_growth_reports_flat_iterations_and_a_falling_error() -> None:
             verdicts.of_solvers,
             Timing("MKL PARDISO", {"slower": 30.3}),
             Timing("MKL PARDISO", {"slower": 29.7}),
+        ),
+        (
+            verdicts.of_heat,
+            Timing("PETSc CG, GAMG", {"slower": 8.1}),
+            Timing("PETSc CG, GAMG", {"slower": 7.9}),
         ),
         (
             verdicts.of_modes,
