@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import threads
 from .arrays import Array
 from .errors import SceneError
 from .geometry import Point, Where, select
@@ -46,7 +47,8 @@ def residual(parts: Discretisation, unknowns: Array) -> Array:
     operator.calibrate_tips(parts.operator.tips)
     given = np.nan_to_num(unknowns)
     found = np.zeros_like(parts.load)
-    rows = operator.product(given[:, operator.active]) - parts.load[:, operator.active]
+    with threads.suited(operator):
+        rows = operator.product(given[:, operator.active]) - parts.load[:, operator.active]
     if operator.ended_stiffness is not None and parts.nodal_load is not None:
         condensed = operator.ended_stiffness.condensed_load(parts.nodal_load, parts.edge_values)
         operator.add_at_surface(rows, condensed)

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
 
+from .. import threads
 from ..arrays import Array, Indices, Mask
 from ..errors import SceneError
 from ..geometry import Where, select
@@ -175,6 +176,7 @@ class Breakable:
         #: How often utilisation was asked for: its last answer is overwritten.
         self.asked = 0
         self._grids = np.zeros((2, 3, int(np.prod(lattice.shape))))
+        self._threads = threads.worth(discretisation.operator)
 
     def _kept(self, discretisation: Discretisation, no_fail: tuple[Where, ...]) -> Mask:
         zone = np.zeros(self.lattice.count, dtype=bool)
@@ -226,10 +228,11 @@ class Breakable:
         self._follow()
         self.asked += 1
         rest = self._load, self._weakness, self.tension_only, self._out
-        if self.rich:
-            bond_kernels.rich_energies(grid, self.free, self._segments, self._steps, *rest)
-        else:
-            bond_kernels.bond_energies(grid, self._segments, self._steps, *rest)
+        with threads.at_most(self._threads):
+            if self.rich:
+                bond_kernels.rich_energies(grid, self.free, self._segments, self._steps, *rest)
+            else:
+                bond_kernels.bond_energies(grid, self._segments, self._steps, *rest)
         return self._out
 
     def stored(self, unknowns: Array, others: Array | None = None) -> float:
@@ -243,11 +246,12 @@ class Breakable:
         runs = self._segments if others is None else self._runs(self._straining(other))
         out = np.empty(len(runs))
         rest = runs, self._steps, self._stored, self.strengths, out
-        if self.rich:
-            more = self.free if others is None else self.free[:, :, :0]
-            bond_kernels.rich_work(grid, self.free, other, more, *rest)
-        else:
-            bond_kernels.bond_work(grid, other, *rest)
+        with threads.at_most(self._threads):
+            if self.rich:
+                more = self.free if others is None else self.free[:, :, :0]
+                bond_kernels.rich_work(grid, self.free, other, more, *rest)
+            else:
+                bond_kernels.bond_work(grid, other, *rest)
         return float(out.sum())
 
     def expansion_work(self, unknowns: Array, free: Array) -> float:
@@ -262,7 +266,8 @@ class Breakable:
         grid, still = self._grid(0, unknowns), np.zeros_like(self._grids[1])
         out = np.empty(len(self._segments))
         rest = self._segments, self._steps, self._stored, self.strengths, out
-        bond_kernels.rich_work(grid, self.free, still, free, *rest)
+        with threads.at_most(self._threads):
+            bond_kernels.rich_work(grid, self.free, still, free, *rest)
         return 2.0 * float(out.sum())
 
     def _straining(self, grid: Array) -> Indices:

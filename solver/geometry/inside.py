@@ -94,10 +94,12 @@ class Body:
     @cached_property
     def convex(self) -> bool:
         """Whether it is one ring that turns one way only."""
-        one = self.vertices[self.before], self.vertices, self.vertices[self.after]
-        (ax, ay), (bx, by), (cx, cy) = (np.ascontiguousarray(p.T) for p in one)
-        single = len(self.shape.geoms) == 1 and not len(self.shape.geoms[0].interiors)
-        return single and bool(_turns_left(ax, ay, bx, by, cx, cy))
+        if len(self.shape.geoms) > 1 or len(self.shape.geoms[0].interiors):
+            return False
+        # Python's whole numbers hold products of any size.
+        whole = self.vertices.astype(np.int64).astype(object)
+        (bx, by), (cx, cy) = (whole - whole[self.before]).T, (whole[self.after] - whole).T
+        return bool((bx * cy - by * cx >= 0).all())
 
     def holds(self, points: Array) -> Mask:
         """Whether points (units), shape (n, 2), are inside or on an edge."""
@@ -235,14 +237,6 @@ def _mark_near(grid: Mask, ends: Array, reach: float) -> None:
             end = min(columns - 1.0, np.floor(high + reach))
             for i in range(int(begin), int(end) + 1):
                 grid[j, i] = True
-
-
-@kernel(**_OPTIONS)
-def _turns_left(ax: Array, ay: Array, bx: Array, by: Array, cx: Array, cy: Array) -> bool:
-    left = True
-    for k in range(len(ax)):
-        left = left and side(ax[k], ay[k], bx[k], by[k], cx[k], cy[k]) >= 0
-    return left
 
 
 @kernel(**_OPTIONS)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
+from .. import threads
 from ..arrays import Array, Indices
 from ..bonds import Bonds
 from ..geometry import Crack, Lattice, disc
@@ -94,7 +95,8 @@ class Patch:
         size = np.linalg.norm(field[:, :2, active], axis=(1, 2))
         field /= size[:, None, None]
         given = np.where(held, field, 0.0)
-        loads = np.stack([-operator.coupling(values).ravel() for values in given], axis=1)
+        with threads.suited(operator):
+            loads = np.stack([-operator.coupling(values).ravel() for values in given], axis=1)
         at = np.nonzero(np.hypot(*away[active].T) <= SIZE)[0]
         unknowns = (np.arange(c)[:, None] * len(active) + at).ravel()
         unit = np.zeros((operator.shape[0], len(unknowns)))

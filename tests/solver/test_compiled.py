@@ -1,5 +1,7 @@
 """Kernels are kept where that is possible, done without where not, and never kept stale."""
 
+import json
+import os
 import subprocess
 import sys
 
@@ -9,6 +11,39 @@ import pytest
 from solver import compiled
 from solver.fracture import bond_kernels
 from solver.material import strains
+
+# Prints, one scene after another, the kernels that have been compiled or found on disk by then.
+FIRST_USE = """
+import gc, json
+from numba.core.dispatcher import Dispatcher
+from solver import ConductivityTensor, Crack, ElasticTensor, Scene, Support, rectangle
+from solver.reactions import reaction
+
+def told(solution):
+    found = [d.py_func for d in gc.get_objects() if isinstance(d, Dispatcher) and d.signatures]
+    names = [f.__qualname__ for f in found if f.__module__.startswith("solver.")]
+    print(json.dumps([solution.statistics.method, sorted(names)]))
+
+plate, spacing = rectangle(2.0, 1.0), 0.1
+heat, solid = ConductivityTensor.isotropic(1.0), ElasticTensor.isotropic(10.0, 0.25)
+warm = Support.layer(cells=2.5, temperature=lambda x, y: x)
+held = Support.layer(cells=2.5, displacement=(0.01, 0.0))
+told(Scene(plate, spacing, heat, [warm], m=2).solve())
+told(Scene(plate, spacing, solid, [held], m=2).solve())
+pulled = Scene(plate, spacing / 2, solid, [held], m=2).solve()
+reaction(pulled, lambda x, y: x < -0.8)
+told(pulled)
+cut = Crack((-0.3, 0.02), (0.3, 0.02))
+told(Scene(plate, spacing, solid, [held], m=2, cracks=[cut]).solve())
+"""
+# What each of them needs beyond those before it.
+NEEDED = {
+    "heat, small": {"_span", "_mark_near", "scatter", "conductive_product", "block_scale"},
+    "elastic, small": {"elastic_product"},
+    "elastic": {"narrow", "relax", "weighted_rows"},
+    "crack": {"_rest", "sign_of_cross", "side", "_touches", "_mark_tips", "_mark_lying", "_moved"}
+    | {"_beside", "cuts", "_mark_cut", "_lies", "_mark_between"},
+}
 
 
 def double(x):
@@ -43,6 +78,28 @@ def test_without_a_place_the_whole_solver_is_imported():
     assert int(found.stdout) >= 8
 
 
+def test_a_scene_compiles_only_what_it_uses():
+    """Small bodies keep to one thread, so that nothing is compiled for two."""
+    found = subprocess.run(
+        [sys.executable, "-c", FIRST_USE],
+        env=os.environ | {"NUMBA_NUM_THREADS": "2"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    told = [json.loads(line) for line in found.stdout.splitlines()]
+    assert [method for method, _ in told] == [
+        "CG, block Jacobi", "CG, block Jacobi", "CG, two-level", "CG, block Jacobi",
+    ]  # fmt: skip
+    allowed = set()
+    for (_, names), (scene, needed) in zip(told, NEEDED.items(), strict=True):
+        allowed |= needed
+        plain = [name.removesuffix("_alone") for name in names]
+        assert set(plain) <= allowed, scene
+        assert len(set(plain)) == len(plain), scene
+        assert not set(names) & {"scatter", "relax", "elastic_product"}, scene
+
+
 def test_a_full_disk_does_not_end_a_solve(monkeypatch):
     found = compiled.kernel()(double)
 
@@ -66,6 +123,6 @@ def test_what_a_kernel_calls_belongs_to_its_stamp(tmp_path):
             pytest.skip("this version of Numba keeps its stamps elsewhere")
         stamps.append(index._source_stamp)
     assert stamps[0] != stamps[1]
-    kept = bond_kernels.bond_energies._cache._cache_file._source_stamp
+    kept = bond_kernels.bond_energies.shared._cache._cache_file._source_stamp
     assert len(kept) == 2
     assert strains.__file__.endswith("strains.py")

@@ -30,7 +30,10 @@ def test_compiled_products_are_those_of_python(kind):
         operator.diagonal, bonds.strengths,
     )  # fmt: skip
     compiled, plain = np.empty_like(values), np.empty_like(values)
-    product(*arguments, compiled)
+    product.alone(*arguments, compiled)
+    shared = np.empty_like(values)
+    product.shared(*arguments, shared)
+    np.testing.assert_array_equal(compiled, shared)
     # NumPy warns of unsigned steps that wrap around, as they are meant to in neither.
     with np.errstate(over="ignore"):
         product.py_func(*arguments, plain)
