@@ -222,6 +222,9 @@ class Method:
     resolutions : mapping from Level to a tuple of ascending n
     warm_up : callable
         Compiles what `run` needs, so that no measured second is a compiler's.
+    problem : str
+        Which one it solves, where a case has several: what errors and times of different problems
+        cost is not compared.
     """
 
     name: str
@@ -229,6 +232,7 @@ class Method:
     run: Callable[[int], Measurement]
     resolutions: Mapping[Level, tuple[int, ...]]
     warm_up: Callable[[], None] = nothing_to_compile
+    problem: str = ""
 
     @property
     def coarsest(self) -> int:

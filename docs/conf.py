@@ -26,6 +26,7 @@ extensions = [
     "numpydoc",
     "audit",
     "commands",
+    "coverage",
 ]
 exclude_patterns = ["build", "gallery/README.rst", "**/README.md"]
 source_suffix = {".rst": "restructuredtext", ".md": "markdown"}
@@ -56,7 +57,15 @@ html_css_files = ["tables.css"]
 #: Pages without a section of their own leave its place to their tables.
 html_sidebars = {
     page: []
-    for page in ("results", "errata", "architecture", "commands", "contributing", "changelog")
+    for page in (
+        "results",
+        "validity",
+        "errata",
+        "architecture",
+        "commands",
+        "contributing",
+        "changelog",
+    )
 }
 html_theme_options = {"show_toc_level": 2, "navigation_with_keys": True}
 html_copy_source = False

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -62,30 +63,42 @@ def read(folder: Path) -> Study | None:
 
 
 def sections(study: Study, titles: dict[str, str], quantities: dict[str, str]) -> list[Any]:
-    """What the template shows of each case: picture, points, and the time to two errors."""
+    """What the template shows of each problem: picture, points, and the time to some errors."""
     found = []
-    for name in dict.fromkeys(p.case for p in study.points):
-        points = [p for p in study.points if p.case == name]
+    problems = dict.fromkeys((p.case, p.problem) for p in study.points)
+    for number, (name, problem) in enumerate(problems):
+        points = [p for p in study.points if (p.case, p.problem) == (name, problem)]
         caption = "Bars are quartiles of repeated times; points that nothing beats are filled."
         alt = "; ".join(f"{p.method}: {p.error:.1e} in {p.seconds:.2g} s" for p in points)
         picture = Picture.drawn(
-            f"precision-{name}", "svg", _figure(points, quantities[name]), caption, alt
+            f"precision-{number}-{name}", "svg", _figure(points, quantities[name]), caption, alt
         )
-        fem = sorted({p.error for p in points if p.kind == "fem"})
-        targets = [fem[-1], fem[0]] if fem else [min(p.error for p in points)]
+        targets = _targets(points)
         found.append(
             {
                 "name": name,
-                "title": titles[name],
+                "id": f"precision-{number}-{name}",
+                "title": f"{titles[name]}: {problem}" if problem else titles[name],
                 "quantity": quantities[name],
                 "picture": picture,
                 "points": points,
                 "reached": [
-                    (e, seconds_to(points, e * (1 + 1e-9))) for e in dict.fromkeys(targets)
+                    # a second code on the same mesh gives the same three digits
+                    (e, seconds_to(points, e * (1 + 1e-3)))
+                    for e in targets
                 ],
             }
         )
     return found
+
+
+def _targets(points: list[Point]) -> list[float]:
+    """The coarsest and the finest error of scikit-fem, and the power of ten that both can reach."""
+    fem = sorted({p.error for p in points if p.method.startswith("fem")})
+    if not fem:
+        return [min(p.error for p in points)]
+    power = 10.0 ** math.ceil(math.log10(fem[0])) if fem[0] > 0 else fem[0]
+    return sorted({fem[-1], min(power, fem[-1]), fem[0]}, reverse=True)
 
 
 def _figure(points: list[Point], quantity: str) -> Figure:

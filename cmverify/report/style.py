@@ -69,7 +69,7 @@ def of_method(name: str, index: int = 0) -> dict[str, Any]:
     else:
         turn, place = divmod(index, len(CYCLE))
         color, marker, size = CYCLE[place], MARKERS[(place + turn) % len(MARKERS)], 6.0
-    fem = name.startswith("fem")
+    fem = name.startswith(("fem", "fenicsx"))
     return {
         "color": color,
         "marker": marker,

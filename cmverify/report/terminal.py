@@ -213,13 +213,13 @@ def print_study(screen: Console, points: Sequence[study.Point]) -> None:
     """Work against precision with its spread, case by case."""
     right = ("at", "error", "median (s)", "quartiles (s)", "unknowns", "memory (MB)")
     head = columns("method", *right, "", right=right)
-    for name in dict.fromkeys(p.case for p in points):
+    for case, problem in dict.fromkeys((p.case, p.problem) for p in points):
         rows = [
             (p.method, str(p.resolution), f"{p.error:.2e}", f"{p.seconds:.4f}",
              f"{p.fast:.4f} … {p.slow:.4f}", str(p.unknowns), f"{p.memory / 1e6:.1f}",
              {"front": "★", "perhaps": "☆", "beaten": ""}[p.standing])
             for p in points
-            if p.case == name
+            if (p.case, p.problem) == (case, problem)
         ]  # fmt: skip
-        show(screen, head, rows, title=name)
+        show(screen, head, rows, title=f"{case}, {problem}" if problem else case)
         screen.print()

@@ -42,7 +42,8 @@ def method(case: Case, pose: Pose) -> Method | None:
         run = partial(_statics, case, pose)
     else:
         return None
-    return Method(f"{own.name}, assembled", "bond", run, own.resolutions, own.warm_up)
+    name = f"{own.name}, assembled"
+    return Method(name, "bond", run, own.resolutions, own.warm_up, own.problem)
 
 
 def _statics(case: Case, pose: Pose, n: int) -> Measurement:

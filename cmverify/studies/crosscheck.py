@@ -86,6 +86,7 @@ SOLVED = {
     "in_plane_modes": "modes",
     "plate_between_leads": "conduction between leads",
     "strained_conduction": "conduction of a strained body",
+    "solve": "several solids",
 }
 
 

@@ -5,7 +5,7 @@ it takes. The timing pass then repeats set-up and solve alone, one point after t
 process, with compiled code warm; times are medians, with the quartiles as their spread. A
 bond method is varied one choice at a time (calibration, m, area rule, tolerance) on the problem
 that its case poses to other programs, and solved as an assembled matrix too; the case's rivals
-stand beside.
+stand beside, and finite elements by a second code (`cmverify.studies.by_fenicsx`).
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import io
 import math
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
@@ -25,7 +26,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from cmverify.case import Case, Level, Measurement, Method
-from cmverify.studies import assembled
+from cmverify.studies import assembled, by_fenicsx
 
 if TYPE_CHECKING:
     from cmverify.exchange.statement import Pose
@@ -62,6 +63,7 @@ class Point:
     repeats : times it was measured
     compiling : seconds that the warm-up took, compilation or loading of compiled code included
     memory : bytes by which the process grew at most meanwhile
+    problem : of the case's, where it has several; points of different ones are not compared
     standing : "front" if nothing as accurate is quicker, "beaten" if something is, beyond the
         spread of both; "perhaps" if the spreads do not tell
     command : measures it again
@@ -81,14 +83,24 @@ class Point:
     memory: int
     command: str
     standing: Standing = "perhaps"
+    problem: str = ""
 
 
 def methods_of(case: Case) -> tuple[Method, ...]:
     """The case's own, its rivals, and its bond method varied and on the assembled matrix.
 
-    Scenes are changed where the case poses a static problem.
+    Scenes are changed where the case poses a static problem. FEniCSx is beside scikit-fem. A
+    problem that one method alone solves is left out: nothing stands beside it.
     """
+    every = _ways(case)
+    common = Counter(method.problem for method in every)
+    return tuple(method for method in every if common[method.problem] > 1 or not method.problem)
+
+
+def _ways(case: Case) -> tuple[Method, ...]:
+    """All of `methods_of`, and what stands alone."""
     known = (*case.methods, *case.rivals)
+    known = (*known, *by_fenicsx.beside(known))
     if not case.poses:
         return known
     pose = case.poses[0]
@@ -101,7 +113,7 @@ def methods_of(case: Case) -> tuple[Method, ...]:
     varied = tuple(
         Method(
             f"{own.name}, {name}", "bond", partial(vary, case, pose, changes, tolerance),
-            own.resolutions, own.warm_up,
+            own.resolutions, own.warm_up, own.problem,
         )
         for name, changes, tolerance in VARIANTS
         if static and not any(method.name.endswith(name) for method in known)
@@ -155,7 +167,12 @@ def measure(
     -------
     points : list of Point
     refused : list of str
-        Methods that raised, with what they said.
+        Methods that raised, with what they said; FEniCSx where there is none.
+
+    Raises
+    ------
+    FenicsxError
+        If another FEniCSx is asked for than there is.
     """
     from cmverify.run import worker
 
@@ -166,9 +183,11 @@ def measure(
         if not only or method.name in only
         for n in ((resolution,) if resolution else method.resolutions.get(level, ()))
     ]
-    listen(f"{len(plan)} points: errors and memory")
     found: list[tuple[Case, Method, int, Measurement, float, int]] = []
-    refused = []
+    plan, refused = _possible(plan)
+    for said in refused:
+        listen(said)
+    listen(f"{len(plan)} points: errors and memory")
     for case, method, n in plan:
         begun = time.perf_counter()
         worker.warm_up(method)
@@ -180,11 +199,13 @@ def measure(
             refused.append(f"{case.name} {method.name} {case.length}/{n}: {error}")
             continue
         if outcome.total_seconds > 0 and case.primary in outcome.quantities:
-            found.append((case, method, n, outcome, compiling, grown[0]))
+            memory = int(outcome.statistics.get("memory", grown[0]))
+            compiling = float(outcome.statistics.get("compiling", compiling))
+            found.append((case, method, n, outcome, compiling, memory))
     listen("times, alone on this process")
     points = []
     for case, method, n, outcome, compiling, memory in found:
-        times = _times(method, n, repeats)
+        times = _times(method, n, repeats, outcome.total_seconds)
         fast, middle, slow = np.percentile(times, (25, 50, 75))
         points.append(
             Point(
@@ -193,12 +214,30 @@ def measure(
                 len(times), compiling, memory,
                 f'cmverify precision {case.name} --measure --method "{method.name}" '
                 f"--resolution {n}",
+                problem=method.problem,
             )
         )  # fmt: skip
     return judged(points), refused
 
 
-def _times(method: Method, n: int, repeats: int) -> list[float]:
+def _possible(
+    plan: list[tuple[Case, Method, int]],
+) -> tuple[list[tuple[Case, Method, int]], list[str]]:
+    """Without what needs a code that is not installed, and what is to be said of it."""
+    from references.fenicsx import bridge
+
+    ours = [item for item in plan if not isinstance(item[1].run, by_fenicsx.ByFenicsx)]
+    left = len(plan) - len(ours)
+    if not left or bridge.find() is not None:
+        return plan, []
+    return ours, [f"Left out: {left} by FEniCSx. {bridge.INSTALL}"]
+
+
+def _times(method: Method, n: int, repeats: int, known: float) -> list[float]:
+    """Repeated seconds of a method that takes about the `known` ones."""
+    if isinstance(method.run, by_fenicsx.ByFenicsx):
+        enough = int(min(repeats, ENOUGH / known + 1.0))
+        return method.run.times(n, max(FEWEST, enough))
     times: list[float] = []
     gc.collect()
     while len(times) < FEWEST or (len(times) < repeats and sum(times) < ENOUGH):
@@ -229,11 +268,15 @@ def growth() -> Iterator[list[int]]:
 
 
 def judged(points: Iterable[Point]) -> list[Point]:
-    """The same points with their standing among those of their case."""
+    """The same points with their standing among those of their case and problem."""
     known = list(points)
     found = []
     for p in known:
-        rivals = [q for q in known if q.case == p.case and q is not p and q.error <= p.error]
+        rivals = [
+            q
+            for q in known
+            if (q.case, q.problem) == (p.case, p.problem) and q is not p and q.error <= p.error
+        ]
         standing: Standing = "front"
         if any(q.slow < p.fast for q in rivals):
             standing = "beaten"

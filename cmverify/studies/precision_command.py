@@ -42,6 +42,7 @@ def measured(
     from cmverify.run import environment, folder
     from cmverify.run.threads import available_cores
     from cmverify.studies import precision as study
+    from references.fenicsx import bridge
 
     known = {method.name for case in cases for method in study.methods_of(case)}
     if strange := sorted(set(only) - known):
@@ -57,12 +58,20 @@ def measured(
     started = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
     load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
     tell = (lambda text: None) if manner().quiet else (lambda text: screen.print(f"{text} …"))
-    points, refused = study.measure(cases, level, repeats, only, resolution, tell)
+    try:
+        points, refused = study.measure(cases, level, repeats, only, resolution, tell)
+        second = bridge.find()
+    except bridge.FenicsxError as error:
+        refuse(str(error))
     import numba
+
+    versions = environment.describe().as_dict()
+    if second is not None:
+        versions["fenicsx"] = ", ".join(f"{name} {v}" for name, v in second.versions.items())
 
     found = precision_chapter.Study(
         points, refused, str(level), numba.get_num_threads(), available_cores(), load, started,
-        environment.describe().as_dict(),
+        versions,
     )  # fmt: skip
     terminal.print_study(screen, points)
     for said in refused:

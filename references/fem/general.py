@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from references.fem.body import Acting, Array, Body, Held, InSolid, of_solids
 from references.fem.evaluation import Field
+from references.fem.listening import listened
 from references.fem.mesh import Mesh
 from references.fem.restraint import require_held, require_temperature
 from references.linear import solve_with_prescribed
@@ -69,6 +70,7 @@ class GeneralSolution(Field):
         return np.asarray(np.einsum("ni,nij,nj->n", gradient, tensors, gradient))
 
 
+@listened
 def solve(
     mesh: Mesh,
     tensors: ArrayLike,

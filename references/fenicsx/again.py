@@ -105,6 +105,20 @@ def _transient(heard: Heard, mesh: Mesh, fine: dict[int, Any]) -> Any:
     return replace(heard.answer, fields=[field_])
 
 
+def _general(heard: Heard, mesh: Mesh, fine: dict[int, Any]) -> Any:
+    given = heard.arguments
+    acting = given["acting"]
+    loads = (acting.volume, acting.spread, acting.edge, acting.points)
+    if any(loads) or acting.strain is not None or given["thickness"] is not None:
+        raise OtherProblemError("loads, strains without stress or thicknesses of several solids")
+    solid = given["solid"]
+    if mesh is not given["mesh"]:
+        solid = np.tile(solid, 4)  # as `Mesh.refined` lists a triangle's four parts
+    order = given["order"]
+    values = bridge.several_solids(mesh, given["tensors"], solid, given["held"], order)
+    return replace(heard.answer, **_whole(mesh, order), values=values, solid=solid)
+
+
 _AGAIN: dict[str, Callable[[Heard, Mesh, dict[int, Any]], Any]] = {
     "solve_elasticity": _elasticity,
     "steady_conduction": _conduction,
@@ -112,7 +126,13 @@ _AGAIN: dict[str, Callable[[Heard, Mesh, dict[int, Any]], Any]] = {
     "strained_conduction": _strained,
     "in_plane_modes": _modes,
     "transient_conduction": _transient,
+    "solve": _general,
 }
+
+
+def once(heard: Heard) -> Any:
+    """FEniCSx's answer on the same mesh: an ear (`references.fem.listening`) that hands it on."""
+    return _AGAIN[heard.solver](heard, mesh_of(heard), {})
 
 
 def mesh_of(heard: Heard) -> Mesh:

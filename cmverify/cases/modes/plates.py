@@ -306,6 +306,7 @@ CASES = (
                 partial(bond, plate),
                 _ladder(plate),
                 partial(warm.vibration, plate.surface),
+                plate.name,
             )
             for plate in PLATES
         ),
@@ -338,6 +339,7 @@ CASES = (
                 "fem",
                 partial(fem, plate, order, graded),
                 _ladder(plate),
+                problem=plate.name,
             )
             for plate in PLATES
             if plate.feature or plate.name in QUICK

@@ -1,8 +1,11 @@
 """The matrix says what checks cover, and shows what they do not."""
 
+import json
 from dataclasses import replace
+from pathlib import Path
 
 from cmverify.case import Level, Method, Setting
+from cmverify.cases import registry
 from cmverify.report import summary, validity
 from cmverify.report.build import build
 from cmverify.run.worker import measure
@@ -10,6 +13,7 @@ from solver import ConductivityTensor, Scene, Support, rectangle
 from tests.cmverify.report.test_build import INFO, records
 from tests.cmverify.toy_registry import toy, trapezium
 
+DOCUMENTED = Path(__file__).parents[3] / "docs" / "validity.json"
 VOLUME = Setting("elasticity", "lattice", "volume", 5.0, "constant")
 EXTRAPOLATED = Setting("heat conduction", "positive", "extrapolated", 2.5, "conical")
 
@@ -43,6 +47,26 @@ def test_the_page_shows_empty_places(tmp_path):
     assert page.count("nothing covers this") == 9 * 12 - 1
     assert "1 of 108" in page
     assert "Validity" not in build(judged(), INFO, tmp_path).read_text()
+
+
+def test_the_documentation_shows_places_and_cases_that_are():
+    """Made by `cmverify validity --json`; a case that is renamed must be renamed there."""
+    places = json.loads(DOCUMENTED.read_text(encoding="utf-8"))
+    wanted = {(p, c, t, m) for (p, c), (t, m) in empty_places()}
+    found = [(one["physics"], one["calibration"], one["treatment"], one["m"]) for one in places]
+    assert wanted <= set(found)
+    assert len(set(found)) == len(found)
+    named = {name for one in places for name in one["cases"].split(", ") if name}
+    assert named <= {case.name for case in registry.all_cases()}
+    assert any(one["held"] == "0" for one in places)  # if nothing is empty, the page says too much
+    for one in places:
+        held, _, asked = one["held"].partition("/")
+        assert held == (asked or "0"), f"the documentation shows a check that fails: {one}"
+
+
+def empty_places():
+    found = validity.matrix([])
+    return [(row, column) for row in found.rows for column in found.columns]
 
 
 def test_a_measurement_knows_what_it_solved():

@@ -50,7 +50,7 @@ def test_a_posed_problem_is_varied_one_choice_at_a_time():
     case = registry.get("disc-exponential")
     names = [m.name for m in precision.methods_of(case)]
     assert {"fem/P1", "fem/P2"} <= set(names)
-    varied = [m for m in precision.methods_of(case) if m not in case.methods]
+    varied = [m for m in precision.methods_of(case) if m not in case.methods and m.kind == "bond"]
     changed = [name for name, _, _ in precision.VARIANTS if name != "continuum"]  # a method
     assert [m.name.split(", ")[1] for m in varied] == [*changed, "assembled"]
     pose = case.poses[0]
@@ -62,6 +62,27 @@ def test_a_posed_problem_is_varied_one_choice_at_a_time():
     assert loose.quantities[case.primary] > same.quantities[case.primary]
     with pytest.raises(ValueError, match="other particles"):
         precision.vary(case, pose, {"spacing": 0.07}, 1e-6, 10)
+
+
+def test_only_points_of_one_problem_are_compared():
+    hole = replace(P, problem="hole", seconds=9.0, fast=8.0, slow=10.0)
+    assert standings(P, hole) == ["front", "front"]
+    plates = precision.methods_of(registry.get("free-plates"))
+    assert {m.problem for m in plates} == {"mild 30°", "hole", "crack"}
+    alone = "bond/lamina 0°"  # no other method solves that plate
+    assert alone not in {m.name for m in plates}
+    study = precision_chapter.Study([P, hole], [], "quick", 1, 2, 0.0, "now")
+    shown = precision_chapter.sections(study, {"c": "A plate"}, {"c": "error"})
+    assert [s["title"] for s in shown] == ["A plate", "A plate: hole"]
+    assert len({s["id"] for s in shown}) == 2
+
+
+def test_errors_that_are_shown_are_those_of_finite_elements_and_a_power_of_ten():
+    errors = (5e-4, 4e-7, 3e-6)
+    points = [replace(P, method="fem/P1", kind="fem", error=e) for e in errors]
+    targets = precision_chapter._targets([P, *points])
+    assert targets == pytest.approx([5e-4, 1e-6, 4e-7])
+    assert precision_chapter._targets([P]) == [P.error]
 
 
 def test_cases_of_the_study_are_tagged():

@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 
 from references.fem.conduction import steady_conduction
 from references.fem.elasticity import solve_elasticity
+from references.fem.general import Acting, solve
 from references.fem.leads import Lead, plate_between_leads
 from references.fem.listening import listening
 from references.fem.mesh import crack_tip_disc, disc, rectangle
 from references.fem.modes import in_plane_modes
 from references.fem.piezoresistive import strained_conduction
+from references.fem.polygons import polygons
 from references.fem.transient import transient_conduction
 from references.fenicsx import again, bridge
 from references.generators_dynamic import plate_mesh
@@ -21,6 +23,7 @@ from references.provenance import load
 
 C = np.array([[1, 1 / 5, 1 / 10], [1 / 5, 4 / 5, 1 / 6], [1 / 10, 1 / 6, 1 / 3]])
 D = np.array([[5.0, 2.0], [2.0, 1.0]])
+SQUARE = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -201,6 +204,23 @@ def test_a_worker_that_fails_says_why() -> None:
         bridge.run(problem)
 
 
+def test_passes_are_timed_apart_and_give_the_same() -> None:
+    mesh = rectangle(1, 1, 0.3)
+    pulled = {"left": (-1.0, 0.0), "right": (1.0, 0.0)}
+    usual = bridge.solve_elasticity(mesh, C, tractions=pulled)
+    nearly = {**pulled, "right": (1.0 + 1e-6, 0.0)}
+    with bridge.timed(3) as timing:
+        assert relative(bridge.solve_elasticity(mesh, C, tractions=pulled), usual) < 1e-10
+        assert relative(bridge.solve_elasticity(mesh, C, tractions=nearly), usual) < 1e-5
+        bridge.in_plane_frequencies(mesh, C, 1.0, 3)
+    assert len(timing.taken) == 3
+    for taken in timing.taken:
+        for stage in ("forms", "setup", "solve"):
+            assert taken[stage].shape == (3,)
+            assert (taken[stage] > 0).all()
+        assert taken["memory"] >= 0
+
+
 def heard(solve: Any) -> list[again.Second]:
     ear = again.Beside()
     with listening(ear):
@@ -216,6 +236,22 @@ def test_leads_of_given_current_or_potential_at_a_slit(held: bool) -> None:
     (second,) = heard(lambda: plate_between_leads(2, 1, 0.1, D, leads, slit))
     assert second.difference < 1e-10
     assert 1e-4 < second.change < 0.05
+
+
+@pytest.mark.parametrize("size", [2, 3])
+def test_several_solids(size: int) -> None:
+    mesh = polygons([(SQUARE, [SQUARE / 3]), (SQUARE / 3, [])], 0.3)
+    solid = (np.abs(mesh.points[mesh.triangles].mean(axis=1)).max(axis=1) < 1 / 3).astype(np.int64)
+    tensors = np.stack([np.eye(size), 7 * np.eye(size)]) + 0.2
+
+    def held(nodes: NDArray, edge: NDArray) -> NDArray:
+        wanted = np.stack([nodes[:, 0] ** 2, nodes[:, 0] * nodes[:, 1]][: size - 1], axis=1)
+        return np.where(edge[:, None], wanted, np.nan)
+
+    (second,) = heard(lambda: solve(mesh, tensors, solid, held, Acting()))
+    assert second.difference < 1e-10
+    assert 1e-4 < second.change < 0.05
+    assert len(second.finer.solid) == 4 * len(solid)
 
 
 def test_conduction_of_a_strained_body_on_both_meshes() -> None:
