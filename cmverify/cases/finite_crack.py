@@ -139,7 +139,7 @@ BOUNDS = (
     ),
     Check("calibrated/along rows", "K", {30: 2.2e-3, 60: 2e-4, 120: 1e-4}, source=MEASURED),
     Check("drawn/27°", "displacement", {30: 4.3e-3, 60: 1.8e-3, 120: 1.2e-3}, source=MEASURED),
-    Check("calibrated/27°", "displacement", {30: 2.2e-3, 60: 1.1e-3, 120: 6e-4}, source=MEASURED),
+    Check("calibrated/27°", "displacement", {30: 9.6e-4, 60: 3.2e-4, 120: 7.1e-5}, source=MEASURED),
     *(
         Check(name, "left as drawn", equals={30: 0.0, 60: 0.0, 120: 0.0}, source="none has to be")
         for name in ("calibrated/along rows", "calibrated/27°")

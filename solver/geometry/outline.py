@@ -348,8 +348,12 @@ class Outline:
     @property
     def beside(self) -> tuple[Indices, Indices]:
         """The region's edge before and after every node, −1 where there is none, (nodes,) each."""
+        return self.neighbours(self.edged)
+
+    def neighbours(self, among: Mask) -> tuple[Indices, Indices]:
+        """The same of some edges."""
         before, after = np.full((2, len(self.nodes)), -1)
-        here = np.nonzero(self.edged)[0]
+        here = np.nonzero(among)[0]
         before[self.edges[here, 1]], after[self.edges[here, 0]] = here, here
         return before, after
 

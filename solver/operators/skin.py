@@ -27,7 +27,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, Indices
+from ..arrays import Array, Indices, Mask
 from ..compiled import kernel
 from ..geometry import Outline
 from ..material import Family, Moduli, effective_tensor
@@ -48,6 +48,8 @@ _BEND = 1.2
 # Radius of curvature (cells) below which the bump would see round the curve: no membrane there,
 # the whole of it from twice that on.
 _TIGHT = 5.0
+# Length (cells) from which on an edge of a crack's face bears a membrane: not beside its tip.
+_LONG = 1.5
 # Cells (and shares) within which edges are straight, and see the same.
 _STRAIGHT = 1e-10
 # Distance (cells) within which a line of particles lies on the edge.
@@ -115,7 +117,8 @@ def thickness(
 ) -> Array:
     """e E_τ of some edges of the outline, shape (len(edges),), N/m (or W/K) per unit thickness.
 
-    Zero on the faces of cracks. `factors` on the moduli, (edges of the outline, family size / 2).
+    Zero on the faces of cracks along rows, and beside tips. `factors` on the moduli, (edges of the
+    outline, family size / 2).
     Of a body of several phases each edge has its own phase's.
     """
     result = np.zeros(len(edges))
@@ -124,7 +127,7 @@ def thickness(
             mine = outline.phase[edges] == phase
             result[mine] = thickness(outline, family, own_moduli, edges[mine], factors)
         return result
-    own = np.nonzero(outline.edged[edges])[0]
+    own = np.nonzero(skinned(outline, family)[edges])[0]
     if not len(own):
         return result
     along = (
@@ -135,6 +138,11 @@ def thickness(
     share, modulus = shares(family, moduli, along, at)
     result[own] = _lacking(outline, family, edges[own], share) * family.spacing * modulus
     return result
+
+
+def skinned(outline: Outline, family: Family) -> Mask:
+    """Edges along which a membrane may be: of the body, and of faces of cracks away from tips."""
+    return np.asarray(outline.edged | (outline.length > _LONG * family.spacing))
 
 
 def layers(outline: Outline, family: Family, moduli: Moduli, edges: Indices) -> Array:
@@ -236,9 +244,10 @@ def _radius(outline: Outline, edges: Indices) -> Array:
     """Radius of curvature at some edges, from the turns at their ends; corners do not count."""
     ends = outline.nodes[outline.edges]
     angle = np.arctan2(*(ends[:, 1] - ends[:, 0]).T[::-1])
-    here = np.nonzero(outline.edged)[0]
-    _, following = outline.beside
+    here = np.arange(len(outline.edges))
+    _, following = outline.neighbours(here >= 0)
     after = following[outline.edges[here, 1]]
+    after = np.where(outline.edged[after] == outline.edged[here], after, -1)
     turn = np.where(after >= 0, (angle[after] - angle[here] + np.pi) % (2 * np.pi) - np.pi, 0.0)
     turn[np.abs(turn) > _CORNER] = 0.0
     sharpest = np.zeros(len(outline.face))
@@ -255,7 +264,7 @@ def _chains(outline: Outline, edges: Indices, reach: float) -> tuple[Array, Indi
 
     A chain ends at corners and beyond `reach`; there its last edge goes straight on.
     """
-    before, following = outline.beside
+    before, following = outline.neighbours(np.ones(len(outline.edges), dtype=bool))
     ends = outline.nodes[outline.edges]
     angle = np.arctan2(*(ends[:, 1] - ends[:, 0]).T[::-1])
     middle = 0.5 * (ends[edges, 0] + ends[edges, 1])
@@ -271,6 +280,7 @@ def _chains(outline: Outline, edges: Indices, reach: float) -> tuple[Array, Indi
             node = outline.edges[current, int(ahead)]
             after = np.where(going, (following if ahead else before)[node], -1)
             going &= (after >= 0) & (after != edges)
+            going &= outline.edged[after] == outline.edged[current]
             for earlier in found:
                 going &= after != earlier
             turn = (angle[after] - angle[current] + np.pi) % (2 * np.pi) - np.pi

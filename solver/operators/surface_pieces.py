@@ -17,7 +17,7 @@ from ..bonds import EndedBonds
 from ..bonds.ended import SHORTEST
 from ..geometry.outline import INNER
 from ..material import Family, Moduli, PolarModuli
-from .skin import layers, thickness
+from .skin import layers, skinned, thickness
 
 # Share of a node's stiffness that a layer along an interface may take, for each of its edges.
 _BORNE = 1.0 / 16.0
@@ -58,7 +58,8 @@ def membrane(ended: EndedBonds, family: Family, moduli: Moduli, number: Indices)
     """
     outline, c = ended.outline, moduli.components
     ends = number[outline.edges]
-    edges = np.nonzero((outline.face == 0) & ended.surface & (ends >= 0).all(axis=1))[0]
+    bearing = skinned(outline, family) & (outline.face != INNER)
+    edges = np.nonzero(bearing & ended.surface & (ends >= 0).all(axis=1))[0]
     if not len(edges):
         return None
     stiffness = thickness(outline, family, moduli, edges, ended.edge_factor) / family.cell_area

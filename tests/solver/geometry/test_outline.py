@@ -149,3 +149,17 @@ def test_a_region_without_an_outline_says_so():
 
     with pytest.raises(SceneError, match="Blob has no outline"):
         Outline.of(Blob(), [], 0.1)
+
+
+@pytest.mark.parametrize(("rise", "oblique"), [(9.0, True), (0.3, False), (0.0, False)])
+def test_nodes_on_an_oblique_face_are_close_beside_its_tips_only(rise, oblique):
+    crack = Crack((-10.2, -0.5 * rise), (10.2, 0.5 * rise))
+    outline = Outline.of(rectangle(60.0, 60.0), [crack], 1.0)
+    for kind in (1, 2):
+        edges = outline.face == kind
+        middle, length = outline.along(0.5)[edges], outline.length[edges]
+        from_tip = np.hypot(10.2, 0.5 * rise) - np.hypot(*middle.T)
+        assert length.sum() == pytest.approx(np.hypot(20.4, rise))
+        assert (length[from_tip < 3.0] <= 1.0 + 1e-9).all()
+        far = length[from_tip > 3.0]
+        assert ((far > 1.5) & (far <= 2.5)).all() if oblique else (far <= 1.0 + 1e-9).all()
