@@ -23,7 +23,7 @@ from ..geometry import Where, select
 from ..magnitude import STRAINS, outside
 from ..material import ChiralModuli, ElasticModuli, Family, PolarModuli
 from ..material.strains import elongations
-from ..operators import segments
+from ..operators import kernels, segments
 from ..problem import Discretisation, thickness
 from . import bond_kernels
 from .broken import BrokenBonds
@@ -208,7 +208,9 @@ class Breakable:
 
     def _grid(self, which: int, unknowns: Array) -> Array:
         grid = self._grids[which]
-        grid[: len(unknowns), self._cells] = np.nan_to_num(unknowns)
+        # Kernels are compiled for arrays that may be written to.
+        given = np.array(unknowns) if np.isfinite(unknowns).all() else np.nan_to_num(unknowns)
+        kernels.scatter(self._segments, given, grid[: len(unknowns)])
         return grid
 
     def utilisation(self, unknowns: Array) -> Array:
@@ -286,11 +288,12 @@ class Breakable:
         """Energy that single bonds hold, J per unit thickness; `bonds` are flat indices."""
         o, p, q = self.ends(bonds)
         nx, ny, half, *stored = self._stored[o].T
-        field = np.zeros((3, self.lattice.count))
-        field[: len(unknowns)] = np.nan_to_num(unknowns)
-        turn = half * (field[2, q] + field[2, p])
+        here, there = np.zeros((2, 3, len(bonds)))
+        here[: len(unknowns)] = np.nan_to_num(unknowns[:, p])
+        there[: len(unknowns)] = np.nan_to_num(unknowns[:, q])
+        turn = half * (there[2] + here[2])
         strains = ("s", "γ", "χ")[: len(stored)]
-        found = elongations(strains, np.stack([nx, ny]), field[:, q] - field[:, p], turn)
+        found = elongations(strains, np.stack([nx, ny]), there - here, turn)
         if self.free.shape[2]:
             found[:2] -= self.free[:, o, p]
         return self.strengths.ravel()[bonds] * np.einsum("ak,ak->k", np.stack(stored), found**2)

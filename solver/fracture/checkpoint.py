@@ -17,6 +17,7 @@ from scipy import sparse
 from .. import state_file
 from ..blas import one_thread
 from ..linear import Border, TwoLevel, method
+from ..linear.two_level import for_many
 from ..operators import BondOperator
 from ..state_file import StateFile
 
@@ -144,7 +145,7 @@ def _restore(run: Growth, found: Mapping[str, Any]) -> None:
         operator: BondOperator = method.positive(before, body.kind)
         parts = (found["coarse_data"], found["coarse_indices"], found["coarse_indptr"])
         coarse = sparse.csc_array(parts, shape=(len(parts[2]) - 1,) * 2)
-        body.preconditioner = TwoLevel(operator, int(found["coarse_cells"]), coarse=coarse)
+        body.preconditioner = for_many(operator, int(found["coarse_cells"]), coarse)
     body.x = found["x"]
     body.rhs = found["rhs"] if len(found["rhs"]) else None
     body.masters = found["masters"]

@@ -34,6 +34,8 @@ from .crack_path import initial_tips
 # Iterations above those that a fresh preconditioner would have taken after which it is brought up
 # to date.
 _PATIENCE = 2
+# Share of the tolerance that iterations in an avalanche end at; what is left is checked after them.
+_AIM = 0.9
 
 
 @dataclass(frozen=True)
@@ -432,10 +434,13 @@ class Equilibrium:
             left = rhs - system.matvec(before)
             refreshed = self._prepare()
             guess, start = self._guess(before, left)
-            task = Task(rhs, guess, tolerance, self.max_iterations, start)
+            aim = _AIM if tolerance > self.tolerance else 0.5
+            task = Task(rhs, guess, tolerance, self.max_iterations, start, aim)
             inverse = self._inverse()
-            after_x, iterations = method.iterate(operator, self.kind, inverse, task, self.border)
-            right = rhs - system.matvec(after_x)
+            found = method.answer(operator, self.kind, inverse, task, self.border)
+            after_x, iterations, right = found.x, found.iterations, found.residual
+            if right is None:
+                right = rhs - system.matvec(after_x)
             self.solving += process_time() - cpu
             size, after = float(np.linalg.norm(rhs)), float(np.linalg.norm(right))
             residual = after / size if size else 0.0
@@ -481,8 +486,11 @@ class Equilibrium:
     def _inverse(self) -> LinearOperator:
         """The preconditioner, with the border if there is one."""
         assert self.preconditioner is not None
-        if self.border is None or self.kind == "indefinite":
+        if self.kind == "indefinite":
             return self.preconditioner
+        if self.border is None:
+            known = self.preconditioner
+            return known.following(self.operator) if isinstance(known, TwoLevel) else known
         known = self._bordered
         if (
             known is None
@@ -500,6 +508,6 @@ class Equilibrium:
                 return False
             self.preconditioner = known.updated(method.positive(self.operator, self.kind))
         else:
-            self.preconditioner = method.preconditioner(self.operator, self.kind)
+            self.preconditioner = method.preconditioner(self.operator, self.kind, often=True)
         self.built = self._followed
         return True

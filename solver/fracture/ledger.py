@@ -39,8 +39,10 @@ class Ledger:
         self.body, self.bonds = body, bonds
         self.work = self.dissipated = self.excess = 0.0
         self.deflection = self.whole = 0.0
-        # The work of the supports, and of which answer with how many bonds gone.
+        # The work of the supports, and what all bonds hold, and of which answer with how many
+        # bonds gone.
         self._supports: tuple[tuple[Array, Array, int], float] | None = None
+        self._held_by_all: tuple[tuple[Array, Array, int], float] | None = None
 
     def opened(self) -> None:
         """The first equilibrium at unit load is known."""
@@ -68,6 +70,8 @@ class Ledger:
         """Σ f·u Δv of the loads at unit load, prescribed unknowns left out."""
         start = self.body.sound
         acting = start.load if start.acting is None else start.acting
+        if not acting.any():
+            return self.body.surface_load_work()
         free = np.where(self.body.prescribed, 0.0, acting)
         found = float((free * np.nan_to_num(self.body.unknowns)).sum()) * start.family.cell_area
         return found + self.body.surface_load_work()
@@ -78,7 +82,7 @@ class Ledger:
         From bond forces, not from the stored energy: the mutual energy of the present field and
         the field that is the prescribed values and zero elsewhere.
         """
-        state = self.body.unknowns, self.bonds.free, len(self.bonds.broken)
+        state = self._state()
         # Asked for before the load changes and when that is recorded.
         if self._supports is None or not same(self._supports[0], state):
             prescribed = np.where(self.body.sound.prescribed, self.body.sound.values, 0.0)
@@ -88,7 +92,13 @@ class Ledger:
 
     def _stored(self) -> float:
         """Energy of all bonds at unit load."""
-        return self.bonds.stored(self.body.unknowns) + self.body.surface_energy()
+        state = self._state()
+        if self._held_by_all is None or not same(self._held_by_all[0], state):
+            self._held_by_all = state, self.bonds.stored(state[0]) + self.body.surface_energy()
+        return self._held_by_all[1]
+
+    def _state(self) -> tuple[Array, Array, int]:
+        return self.body.unknowns, self.bonds.free, len(self.bonds.broken)
 
     def move(self, before: float, after: float) -> None:
         """The load factor changes while no bond breaks."""

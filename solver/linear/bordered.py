@@ -17,7 +17,7 @@ from scipy.sparse.linalg import LinearOperator
 from ..arrays import Array
 from ..errors import NegativeCurvatureError
 from ..operators import BondOperator
-from .krylov import Task, condensed_gradients, conjugate_gradients
+from .krylov import Answer, Task, condensed_gradients, positive_answer
 
 # Least eigenvalue of the preconditioner's Schur complement relative to D: it need not be accurate,
 # but must be positive.
@@ -99,13 +99,13 @@ class BorderedInverse(LinearOperator):
         return self
 
 
-def bordered_gradients(
+def bordered_answer(
     operator: BondOperator,
     kind: str,
     inverse: LinearOperator | BorderedInverse,
     border: Border,
     task: Task,
-) -> tuple[Array, int]:
+) -> Answer:
     """Solve a bordered system; right-hand side, guess and result hold x and then z.
 
     Parameters
@@ -128,7 +128,7 @@ def bordered_gradients(
         whole = (
             inverse if isinstance(inverse, BorderedInverse) else BorderedInverse(inverse, border)
         )
-        return conjugate_gradients(Bordered(operator, border), whole, task)
+        return positive_answer(Bordered(operator, border), whole, task)
     # Rotations are condensed on K alone: one more solve for each unknown of the border.
     inner = inverse.inverse if isinstance(inverse, BorderedInverse) else inverse
     count, total = operator.shape[0], 0
@@ -157,4 +157,4 @@ def bordered_gradients(
         x = solve(left[:count], np.zeros(count))
         z = np.linalg.solve(schur, left[count:] - border.coupling.T @ x)
         found = found + np.concatenate([x - answer @ z, z])
-    return found, total
+    return Answer(found, total)

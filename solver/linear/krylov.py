@@ -30,12 +30,32 @@ class Task:
         Largest number of iterations, restarts included.
     residual : ndarray, optional
         rhs − K guess, where it is known.
+    aim : float
+        Share of the tolerance to iterate to: what is left may drift from what the iterations say.
     """
 
     rhs: Array
     guess: Array
     tolerance: float
     limit: int
+    residual: Array | None = None
+    aim: float = 0.5
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What has been found, after how many iterations.
+
+    Attributes
+    ----------
+    x : ndarray
+    iterations : int
+    residual : ndarray, optional
+        rhs − K x, where it is known.
+    """
+
+    x: Array
+    iterations: int
     residual: Array | None = None
 
 
@@ -71,7 +91,13 @@ class _Counter:
 def conjugate_gradients(
     operator: LinearOperator, preconditioner: LinearOperator, task: Task
 ) -> tuple[Array, int]:
-    """Solve a positive system; returns the solution and the number of iterations.
+    """`positive_answer` as the solution and the number of iterations."""
+    found = positive_answer(operator, preconditioner, task)
+    return found.x, found.iterations
+
+
+def positive_answer(operator: LinearOperator, preconditioner: LinearOperator, task: Task) -> Answer:
+    """Solve a positive system.
 
     Raises
     ------
@@ -80,20 +106,20 @@ def conjugate_gradients(
     """
     guarded, counter = _Guarded(operator), _Counter()
     x, size = task.guess.copy(), float(np.linalg.norm(task.rhs))
-    for number in range(_RESTARTS):
+    defect = task.rhs - operator.matvec(x) if task.residual is None else task.residual
+    for _ in range(_RESTARTS):
         # Solve for the correction: its residual is small, so nothing is lost to cancellation.
-        known = None if number else task.residual
-        defect = task.rhs - operator.matvec(x) if known is None else known
         share = float(np.linalg.norm(defect)) / size if size else 0.0
         left = task.limit - counter.count
         if share <= task.tolerance or left <= 0:
             break
-        rtol = 0.5 * task.tolerance / share
+        rtol = task.aim * task.tolerance / share
         step, _info = cg(
             guarded, defect, rtol=rtol, atol=0.0, maxiter=left, M=preconditioner, callback=counter
         )
         x = x + step
-    return x, counter.count
+        defect = task.rhs - operator.matvec(x)
+    return Answer(x, counter.count, defect)
 
 
 def condensed_gradients(

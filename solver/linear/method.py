@@ -23,9 +23,9 @@ from scipy.sparse.linalg import LinearOperator
 
 from ..arrays import Array
 from ..operators import BondOperator
-from .bordered import Border, bordered_gradients
-from .krylov import Task, condensed_gradients, conjugate_gradients
-from .two_level import BlockJacobi, TwoLevel
+from .bordered import Border, bordered_answer
+from .krylov import Answer, Task, condensed_gradients, positive_answer
+from .two_level import BlockJacobi, TwoLevel, for_many
 
 Preconditioner = Literal["auto", "two-level", "block-jacobi"]
 
@@ -55,6 +55,7 @@ def preconditioner(
     kind: str,
     choice: Preconditioner = "auto",
     earlier: LinearOperator | None = None,
+    often: bool = False,
 ) -> LinearOperator:
     """The preconditioner of a body: two-level, or block Jacobi where that is cheaper.
 
@@ -66,6 +67,8 @@ def preconditioner(
     choice : {"auto", "two-level", "block-jacobi"}
     earlier : LinearOperator, optional
         One of the same body before some bonds changed: a two-level one is brought up to date.
+    often : bool
+        Whether it is to serve many solves.
 
     Raises
     ------
@@ -80,7 +83,7 @@ def preconditioner(
         return BlockJacobi(positive(operator, kind))
     if isinstance(earlier, TwoLevel):
         return earlier.updated(positive(operator, kind))
-    return TwoLevel(positive(operator, kind))
+    return (for_many if often else TwoLevel)(positive(operator, kind))
 
 
 def iterate(
@@ -90,7 +93,19 @@ def iterate(
     task: Task,
     border: Border | None = None,
 ) -> tuple[Array, int]:
-    """Solve a task; returns the solution and the number of iterations.
+    """`answer` as the solution and the number of iterations."""
+    found = answer(operator, kind, preconditioner, task, border)
+    return found.x, found.iterations
+
+
+def answer(
+    operator: BondOperator,
+    kind: str,
+    preconditioner: LinearOperator,
+    task: Task,
+    border: Border | None = None,
+) -> Answer:
+    """Solve a task.
 
     With a `border` the task is that of the bordered system; the preconditioner may then be a
     `BorderedInverse`, to be used more than once.
@@ -101,20 +116,21 @@ def iterate(
         If a body taken to be positive is not.
     """
     if not task.rhs.any():
-        return np.zeros_like(task.rhs), 0
+        return Answer(np.zeros_like(task.rhs), 0, np.zeros_like(task.rhs))
     size = float(np.abs(task.rhs).max())
     if not _PLAIN[0] < size < _PLAIN[1]:
         # Products of what is left of it would leave the range of numbers. A power of two is exact.
         unit = 2.0 ** np.floor(np.log2(size))
         left = None if task.residual is None else task.residual / unit
         scaled = replace(task, rhs=task.rhs / unit, guess=task.guess / unit, residual=left)
-        x, count = iterate(operator, kind, preconditioner, scaled, border)
-        return x * unit, count
+        found = answer(operator, kind, preconditioner, scaled, border)
+        residual = None if found.residual is None else found.residual * unit
+        return Answer(found.x * unit, found.iterations, residual)
     if border is not None:
-        return bordered_gradients(operator, kind, preconditioner, border, task)
+        return bordered_answer(operator, kind, preconditioner, border, task)
     if kind == "indefinite":
-        return condensed_gradients(operator, preconditioner, task)
-    return conjugate_gradients(operator, preconditioner, task)
+        return Answer(*condensed_gradients(operator, preconditioner, task))
+    return positive_answer(operator, preconditioner, task)
 
 
 def name(kind: str, preconditioner: LinearOperator | None) -> str:

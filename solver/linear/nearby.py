@@ -14,13 +14,13 @@ from ..arrays import Array, Indices
 from ..operators import BondOperator
 from ..operators.part import part_of
 from .smoother import Smoother, size_of
-from .two_level import TwoLevel
+from .two_level import TwoLevel, block_inverses
 
-# Products, and the ratio of the eigenvalues of a part some thirty cells wide that they serve.
-_DEGREE, _RATIO = 12, 40.0
+# Products, and the ratio of the eigenvalues of a part some twenty-five cells wide that they serve.
+_DEGREE, _RATIO = 8, 20.0
 # Cells about what has changed, the largest share of the body that they may be, and the most
 # particles that may have changed: beyond, the whole body is solved at once.
-_AROUND, _SHARE, _CHANGED = 14, 0.4, 1_000
+_AROUND, _SHARE, _CHANGED = 12, 0.4, 1_000
 
 
 def around(operator: BondOperator, particles: Indices) -> Indices:
@@ -67,7 +67,7 @@ def change(
         d and K d.
     """
     part = part_of(operator, positions)
-    own = np.ascontiguousarray(np.moveaxis(np.linalg.inv(part.own_blocks), 0, 2))
+    own = block_inverses(part, part.own_blocks, part.own)
     smoother = Smoother(part, inverse.jacobi.bulk, own, inverse.largest, _DEGREE, ratio=_RATIO)
     given = np.ascontiguousarray(residual.reshape(operator.components, -1)[:, positions])
     whole, lost = np.zeros((2, operator.components, len(operator.active)))

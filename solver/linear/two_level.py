@@ -16,6 +16,7 @@ wave that the lattice resolves), which is why two levels do even for a million p
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
 from time import perf_counter
 
 import numpy as np
@@ -29,7 +30,7 @@ from ..errors import NegativeCurvatureError
 from ..operators import BondOperator, kernels
 from .coarse import Hats
 from .coarse_grid import CoarseGrid
-from .smoother import Smoother, size_of
+from .smoother import RATIO, Smoother, size_of
 
 # Distance of coarse nodes by unknowns a particle: with two products of smoothing the best
 # balance of set-up and iterations from 4 to 12 cells. In conduction the coarse matrix is cheap
@@ -42,6 +43,11 @@ _SOUND = 1e-6
 # Steps of Lanczos that find the largest eigenvalue within a tenth, and the share of it that
 # is left of a Krylov space which is the whole one.
 _LANCZOS, _EXHAUSTED = 8, 1e-10
+# The same where one preconditioner serves hundreds of solves: closer nodes cost set-up and leave
+# waves so short that one product of smoothing, on a narrower interval, gains as much as two
+# (a/60, m = 5: 3.5 iterations of two products a solve, with nodes at 8 cells 3.7 of four). Up to
+# so many unknowns: factors grow faster than products.
+_CLOSE, _CLOSE_RATIO, _CLOSE_MOST = {2: 5, 3: 5}, 4.0, 150_000
 # Coarse functions can be dependent in narrow bodies; their null directions carry no residual.
 _REGULARISATION = 1e-11
 
@@ -58,10 +64,10 @@ class BlockJacobi(LinearOperator):
     def __init__(self, operator: BondOperator) -> None:
         super().__init__(operator.dtype, operator.shape)
         self.operator = operator
-        bulk = _inverse(operator, operator.bulk_blocks, None)
+        bulk = block_inverses(operator, operator.bulk_blocks, None)
         #: Inverses, shapes (phases, c, c) and (c, c, d), see `kernels.block_scale`.
         self.bulk: Array = np.ascontiguousarray(np.moveaxis(bulk, 2, 0))
-        self.own: Array = _inverse(operator, operator.own_blocks, operator.own)
+        self.own: Array = block_inverses(operator, operator.own_blocks, operator.own)
 
     def _matvec(self, x: Array) -> Array:
         c = self.operator.components
@@ -74,7 +80,7 @@ class BlockJacobi(LinearOperator):
         return self
 
 
-def _inverse(operator: BondOperator, blocks: Array, which: NDArray[np.int64] | None) -> Array:
+def block_inverses(operator: BondOperator, blocks: Array, which: NDArray[np.int64] | None) -> Array:
     """Inverses of symmetric blocks (n, c, c) as (c, c, n)."""
     if not len(blocks):
         return np.zeros((operator.components, operator.components, 0))
@@ -158,6 +164,8 @@ class TwoLevel(LinearOperator):
         The Galerkin matrix, where it is known (from a checkpoint).
     precision : type
         Of the V-cycle, see `solver.linear.smoother`.
+    ratio : float
+        See `solver.linear.smoother.Smoother`.
 
     Raises
     ------
@@ -174,10 +182,12 @@ class TwoLevel(LinearOperator):
         previous: TwoLevel | None = None,
         coarse: sparse.csc_array | None = None,
         precision: type[np.floating] = np.float32,
+        ratio: float = RATIO,
     ) -> None:
         super().__init__(operator.dtype, operator.shape)
         begun = perf_counter()
         self.operator, self.degree = operator, int(degree)
+        self._ratio, self._precision = ratio, precision
         self.jacobi = BlockJacobi(operator)
         grid: CoarseGrid | None = None
         if previous is not None:
@@ -199,9 +209,7 @@ class TwoLevel(LinearOperator):
         whole = self.coarse if self.ended is None else (self.coarse + self.ended).tocsc()
         self._solve = _factorise(whole, regularisation)
         self.largest = self._largest_eigenvalue()
-        self._smoother = Smoother(
-            operator, self.jacobi.bulk, self.jacobi.own, self.largest, self.degree, precision
-        )
+        self._smoother = self._smoother_of(operator, self.jacobi.own)
         self._down = self.hats.restrict.rounded(precision)
         self._up = self.hats.prolong.rounded(precision)
         #: Wall time of the set-up, s.
@@ -218,7 +226,38 @@ class TwoLevel(LinearOperator):
             self.degree,
             self._regularisation,
             self if same_unknowns(self.operator, operator) else None,
+            ratio=self._ratio,
         )
+
+    def following(self, operator: BondOperator) -> TwoLevel:
+        """This coarse grid with the smoother of the same body after some of its bonds broke.
+
+        Costs next to nothing, and serves nearly as well as one brought up to date. It is positive:
+        what has lost bonds is softer than the coarse matrix says. Products are written to arrays
+        of its own.
+        """
+        built = self.operator
+        if not built.moduli.non_negative or not same_unknowns(built, operator):
+            return self
+        own = np.empty((*self.jacobi.own.shape[:2], len(operator.own)))
+        at = np.minimum(np.searchsorted(operator.own, built.own), len(operator.own) - 1)
+        same = operator.own[at] == built.own
+        same &= (operator.diagonal[:, at] == built.diagonal).all(axis=0)
+        if operator.ended_stiffness is not built.ended_stiffness:
+            same[:] = False
+        own[:, :, at[same]] = self.jacobi.own[:, :, same]
+        other = np.ones(len(operator.own), dtype=bool)
+        other[at[same]] = False
+        blocks, which = operator.own_blocks[other], operator.own[other]
+        own[:, :, other] = block_inverses(operator, blocks, which)
+        found = copy(self)
+        found.operator = operator
+        found._smoother = self._smoother_of(operator, own)
+        return found
+
+    def _smoother_of(self, operator: BondOperator, own: Array) -> Smoother:
+        bulk, most = self.jacobi.bulk, self.largest
+        return Smoother(operator, bulk, own, most, self.degree, self._precision, self._ratio)
 
     def _largest_eigenvalue(self) -> float:
         """Largest λ(D⁻¹K): a rigorous bound without negative moduli, else a safe estimate.
@@ -254,6 +293,23 @@ class TwoLevel(LinearOperator):
 
     def _adjoint(self) -> TwoLevel:
         return self
+
+
+def for_many(
+    operator: BondOperator,
+    coarsening: int | None = None,
+    coarse: sparse.csc_array | None = None,
+) -> TwoLevel:
+    """A preconditioner that serves so many solves that each of them counts, not its set-up.
+
+    Parameters as for `TwoLevel`. In conduction, whose nodes are close as it is, and in large bodies
+    the usual one.
+    """
+    close = _CLOSE.get(operator.components)
+    if close is None or operator.shape[0] > _CLOSE_MOST:
+        return TwoLevel(operator, coarsening, coarse=coarse)
+    coarsening = coarsening or close
+    return TwoLevel(operator, coarsening, degree=1, coarse=coarse, ratio=_CLOSE_RATIO)
 
 
 def _grid(operator: BondOperator) -> tuple[int, CoarseGrid]:

@@ -88,13 +88,15 @@ class BondOperator(LinearOperator):
         #: What the kernels read, see `solver.operators.kernels`.
         self.steps = (dy * row + dx).astype(np.uint64)
         self.strengths: Array = bonds.strengths
-        coupling = self.blocks
-        if isinstance(moduli, PolarModuli):
-            coupling = each_offset_blocks(bonds.family, moduli, coupling=True)
-        self.half_blocks = np.ascontiguousarray(coupling[:, :half])
-        self.bulk = np.stack(
-            [_diagonal_sums(own, np.ones((bonds.family.size, 1)))[:, 0] for own in self.blocks]
-        )
+        if before is None:
+            coupling = self.blocks
+            if isinstance(moduli, PolarModuli):
+                coupling = each_offset_blocks(bonds.family, moduli, coupling=True)
+            self.half_blocks = np.ascontiguousarray(coupling[:, :half])
+            whole = np.ones((bonds.family.size, 1))
+            self.bulk = np.stack([_diagonal_sums(own, whole)[:, 0] for own in self.blocks])
+        else:
+            self.half_blocks, self.bulk = before.half_blocks, before.bulk
         self._whole: NDArray[np.int64]
         self._whole_diagonal: Array
         self._whole, self._whole_diagonal = self._of_whole(before)
@@ -171,13 +173,13 @@ class BondOperator(LinearOperator):
         if before is None or not np.isin(before.bonds.special, bonds.special).all():
             return self._sums(bonds.special, bonds.strengths)
         at = np.searchsorted(bonds.special, before.bonds.special)
-        everybody = len(at) == len(bonds.special)
-        now = bonds.strengths if everybody else bonds.strengths[:, at]
-        same = (now == before.bonds.strengths).all(axis=0)
         found = np.empty((self.bulk.shape[1], len(bonds.special)))
-        found[:, at[same]] = before.special_diagonal[:, same]
+        found[:, at] = before.special_diagonal
         other = np.ones(len(bonds.special), dtype=bool)
-        other[at[same]] = False
+        if len(at) == len(bonds.special):
+            other = (bonds.strengths != before.bonds.strengths).any(axis=0)
+        else:
+            other[at] = (bonds.strengths[:, at] != before.bonds.strengths).any(axis=0)
         found[:, other] = self._sums(bonds.special[other], bonds.strengths[:, other])
         return found
 

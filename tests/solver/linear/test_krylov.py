@@ -70,3 +70,16 @@ def test_condensed_gradients_solve_an_indefinite_body():
     x, count = krylov.condensed_gradients(operator, inverse, task)
     assert 0 < count < 2000
     np.testing.assert_allclose(x, np.linalg.solve(matrix, rhs), atol=1e-9 * np.abs(x).max())
+
+
+def test_an_answer_knows_its_residual_and_what_it_aimed_at():
+    matrix, rhs = spd(5), np.arange(1.0, N + 1)
+    identity, size = aslinearoperator(np.eye(N)), np.linalg.norm(rhs)
+    counts = []
+    for aim in (1e-4, 1.0):
+        task = Task(rhs, np.zeros(N), 1e-4, 1000, aim=aim)
+        found = krylov.positive_answer(aslinearoperator(matrix), identity, task)
+        np.testing.assert_array_equal(found.residual, rhs - matrix @ found.x)
+        assert np.linalg.norm(found.residual) <= 1e-4 * size
+        counts.append(found.iterations)
+    assert counts[1] < counts[0]

@@ -177,3 +177,45 @@ def test_conduction_takes_two_levels_too() -> None:
 def test_unknown_preconditioner_is_refused() -> None:
     with pytest.raises(ValueError, match="unknown preconditioner"):
         _crack_tip(30).solve(preconditioning="magic")
+
+
+@pytest.mark.parametrize("surface", ["volume", "extrapolated"])
+def test_the_smoother_follows_bonds_that_break(surface: str) -> None:
+    """Symmetric, positive, and with fewer iterations than the smoother of the sound body."""
+    held = [Support.layer(cells=2.5, displacement=(0.0, 0.0), rotation=0.0)]
+    if surface == "extrapolated":
+        held = [Support.where(lambda x, y: y < -0.5, displacement=(0.0, 0.0), rotation=0.0)]
+    scene = Scene(disc(1.0), 0.1, ElasticTensor(VOIGT), held, m=2, surface=surface)
+    sound = scene.discretise()
+    family, points = sound.family, sound.lattice.points
+    up = (family.offsets[: family.size // 2] == [0, 1]).all(axis=1)
+    origins = np.nonzero((np.abs(points[:, 1] + 0.05) < 0.01) & (points[:, 0] < 0.2))[0]
+    bonds = sound.bonds.breaking(np.full(len(origins), np.nonzero(up)[0][0]), origins)
+    broken = type(sound.operator)(bonds, sound.moduli, sound.prescribed, sound.operator)
+    size = broken.shape[0]
+    before = TwoLevel(sound.operator, 5, degree=1, precision=np.float64, ratio=4.0)
+    m = _dense(before.following(broken), size)
+    assert np.abs(m - m.T).max() <= 1e-10 * np.abs(m).max()
+    spectrum = np.linalg.eigvals(m @ to_csr(broken).toarray())
+    assert spectrum.real.min() > 0.0
+    if surface == "volume":
+        assert spectrum.real.max() <= 1.0 + 1e-8
+    # Where nothing has broken it is what it was.
+    x = np.cos(np.arange(size))
+    np.testing.assert_array_equal(before.following(sound.operator).matvec(x), before.matvec(x))
+    counts = [
+        method.iterate(broken, "positive", inverse, Task(x, np.zeros(size), 1e-10, 200))[1]
+        for inverse in (before.following(broken), before)
+    ]
+    assert counts[0] <= counts[1]
+
+
+def test_close_nodes_are_for_elastic_bodies_that_are_not_large(monkeypatch) -> None:
+    operator = _crack_tip(20).discretise().operator
+    often = two_level.for_many(operator)
+    assert (often.hats.coarsening, often.degree) == (5, 1)
+    again = two_level.for_many(operator, often.hats.coarsening, often.coarse)
+    x = np.cos(np.arange(operator.shape[0]))
+    np.testing.assert_array_equal(again.matvec(x), often.matvec(x))
+    monkeypatch.setattr(two_level, "_CLOSE_MOST", 100)
+    assert two_level.for_many(operator).degree == 2
