@@ -26,7 +26,7 @@ extensions = [
     "numpydoc",
     "audit",
     "commands",
-    "coverage",
+    "places",
 ]
 exclude_patterns = ["build", "gallery/README.rst", "**/README.md"]
 source_suffix = {".rst": "restructuredtext", ".md": "markdown"}

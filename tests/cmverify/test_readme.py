@@ -1,5 +1,6 @@
 """What the README and the pages beside it show works as it is written."""
 
+import importlib.util
 import re
 from pathlib import Path
 
@@ -96,3 +97,11 @@ def test_the_scene_files_of_the_pages_are_read(tmp_path):
     for number, text in enumerate(found):
         (tmp_path / f"{number}.toml").write_text(text)
         request(tmp_path / f"{number}.toml")
+
+
+def test_extensions_of_the_documentation_hide_no_installed_module():
+    """Their folder comes first on the path: one called `coverage` took Numba's away."""
+    names = {path.stem for path in (ROOT / "docs").glob("*.py")} - {"conf"}
+    assert names
+    for name in names:
+        assert importlib.util.find_spec(name) is None, f"docs/{name}.py hides a module"

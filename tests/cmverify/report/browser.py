@@ -24,11 +24,14 @@ addEventListener("load", () => {
       if (inner.offsetWidth > box.clientWidth + 1)
         wide.push([box.getAttribute("aria-label"), inner.offsetWidth, box.clientWidth]);
   const reach = [...document.querySelectorAll(".scroll")].filter(b => b.tabIndex !== 0).length;
+  const seen = {contentVisibilityAuto: true};
+  const checks = [...document.querySelectorAll(".checks table")];
+  const folded = checks.filter(table => !table.checkVisibility(seen)).length;
   const blind = [...document.images].filter(i => !i.complete || !i.naturalWidth || !i.alt).length;
   const out = document.createElement("pre");
   out.id = "probe";
   out.textContent = JSON.stringify({page: root.scrollWidth, window: root.clientWidth, wide,
-    unreachable: reach, blind, height: root.scrollHeight});
+    unreachable: reach, blind, folded, height: root.scrollHeight});
   document.body.append(out);
 });
 </script>"""

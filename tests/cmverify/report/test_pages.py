@@ -45,6 +45,15 @@ def test_a_browser_finds_nothing_wrong(page, width):
         assert seen["wide"] == []
 
 
+@needs_chromium
+def test_a_sheet_shows_every_check(tmp_path):
+    """On a screen they are folded; a reader of paper could not unfold them."""
+    judged = summary.summarise([toy()], records({n: trapezium(n) for n in (10, 20)}))
+    whole = build(judged, INFO, tmp_path)
+    assert browser.look(whole, 1400)["folded"] == 1
+    assert browser.look(whole, browser.SHEET, printed=True)["folded"] == 0
+
+
 def test_every_link_resolves(page, tmp_path):
     assert browser.dead_links(page) == []
     broken = tmp_path / "broken.html"
