@@ -26,6 +26,7 @@ ELSEWHERE = {
     "solver/analyses/verlet_motion.py": "tests/solver/analyses/test_motion.py",
     # A case is run, and perturbed, as a whole.
     "cmverify/case.py": "tests/cmverify/judge/test_verdict.py",
+    "cmverify/cases/beside_elements.py": "tests/cmverify/faults/test_table.py",
     "cmverify/cases/closed_forms/constants.py": "tests/cmverify/faults/test_table.py",
     "cmverify/cases/closed_forms/differences.py": "tests/cmverify/faults/test_table.py",
     "cmverify/cases/closed_forms/elements.py": "tests/cmverify/faults/test_table.py",

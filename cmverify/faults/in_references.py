@@ -308,6 +308,19 @@ FAULTS = (
         scaled(1.01),
         "finite elements",
     ),
+    Fault("mass of finite elements + 1 %", f"{F}.body.Body.mass", scaled(1.01), "finite elements"),
+    Fault(
+        "motion of finite elements without damping",
+        f"{F}.motion.moved",
+        argument(3, lambda damping: (0.0, 0.0)),
+        "finite elements",
+    ),
+    Fault(
+        "heat capacity of finite elements in time + 1 %",
+        f"{F}.in_time.warmed",
+        argument(2, lambda capacities: [1.01 * one for one in capacities]),
+        "finite elements",
+    ),
     Fault(
         "finite elements' tractions + 1 %",
         f"{F}.elasticity._traction_load",

@@ -67,7 +67,10 @@ METHODS: dict[str, tuple[Callable[[int], Measurement], dict[str, float], str]] =
     ),
     "finite elements": (
         elements,
-        dict.fromkeys(("stress", "strain", "difference", "flux", "temperature"), 1e-10),
+        {
+            **dict.fromkeys(("stress", "strain", "difference", "flux", "temperature"), 1e-10),
+            "motion": 1e-8, "heat in time": 1e-9,
+        },
         "linear fields are exact on any mesh",
     ),
     "cracks": (
@@ -125,6 +128,8 @@ QUANTITIES = {
     "strain": "its strain",
     "difference": "differences of its displacement, rigid motions aside",
     "temperature": "temperature of finite elements, linear field",
+    "motion": "displacement of damped finite elements that grows with the square of time",
+    "heat in time": "temperature of finite elements that grows with time",
     "drop": "Johnson's potential drop far from the crack",
 }
 CASES = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cmverify.case import Measurement
+from cmverify.case import Array, Measurement
 from cmverify.cases.closed_forms.differences import CONDUCTIVITY, TENSOR, around
 from cmverify.judge.norms import relative_l2, worst
 
@@ -43,4 +43,46 @@ def elements(_: int) -> Measurement:
             ("temperature", relative_l2(heat.at(points), x - 2 * y)),
         ):
             found[name] = worst((found.get(name, 0.0), error))
-    return Measurement(loaded.unknowns, found)
+    return Measurement(loaded.unknowns, found | in_time(points))
+
+
+def in_time(points: Array) -> dict[str, float]:
+    """Fields that grow with t² and t, linear in space: their steps are exact of those, too."""
+    from references.fem.body import Acting, Body, of_solids
+    from references.fem.in_time import warmed
+    from references.fem.motion import moved
+    from references.fem.polygons import polygons
+
+    square = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
+    mesh = polygons([(square, [])], 0.5)
+    body, heat = (Body(mesh, c, np.zeros(len(mesh.triangles), dtype=np.int64)) for c in (2, 1))
+    slope, alpha, density, capacity = np.array([[0.3, -0.1], [0.2, 0.5]]), 0.4, 1.5, 2.0
+    moving = moved(
+        body,
+        body.stiffness(of_solids(TENSOR[None])),
+        body.mass([density]),
+        (alpha, 0.1),
+        (np.zeros(body.basis.N), np.zeros(body.basis.N)),
+        lambda t: body.held(lambda n, e: np.where(e[:, None], t**2 * n @ slope.T, np.nan)),
+        lambda t: body.load(
+            Acting(
+                volume=[lambda x, y: density * (2 + 2 * alpha * t) * np.tensordot(slope, [x, y], 1)]
+            )
+        ),
+        [0.2],
+        0.1,
+    )
+    warming = warmed(
+        heat,
+        of_solids(CONDUCTIVITY[None]),
+        [capacity],
+        np.zeros(heat.basis.N),
+        lambda t: heat.held(lambda n, e: np.where(e, t * n @ [1.0, -2.0], np.nan)[:, None]),
+        lambda t: heat.load(Acting(volume=[lambda x, y: capacity * (x - 2 * y)])),
+        [0.2],
+        steps=1,
+    )
+    return {
+        "motion": relative_l2(moving[0][0].at(points), 0.04 * points @ slope.T),
+        "heat in time": relative_l2(warming[0].at(points), 0.2 * points @ [1.0, -2.0]),
+    }

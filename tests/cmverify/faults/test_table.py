@@ -179,7 +179,14 @@ def test_an_unknown_fault_is_refused():
 
 def test_the_reported_figures_of_new_cases_are_checked():
     """Every quantity of a case of references is judged: nothing is measured for show."""
-    for name in ("closed-forms", "solids", "recovered", "yardsticks", "first-break"):
+    for name in (
+        "closed-forms",
+        "solids",
+        "recovered",
+        "yardsticks",
+        "beside-elements",
+        "first-break",
+    ):
         case = cases.get(name)
         judged = {(c.method, c.quantity) for c in case.checks}
         for method in case.methods:
