@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 
@@ -97,13 +98,13 @@ def cross_check(_: int) -> Measurement:
     """Rows of the cross-check by FEniCSx that hold, and such that do not."""
     from cmverify.studies.crosscheck import Row
 
-    sound = {"difference": 1e-11, "change": 2e-3, "theirs": 1e-2, "finer": 5e-3}
-    wrong = [
+    sound: dict[str, Any] = {"difference": 1e-11, "change": 2e-3, "theirs": 1e-2, "finer": 5e-3}
+    wrong: list[dict[str, Any]] = [
         {"difference": 2e-9}, {"difference": float("nan")}, {"difference": None}, {"change": 0.05},
         {"finer": 2e-2}, {"failure": "no answer"},
     ]  # fmt: skip
-    bad = sum(Row("c", "p", **{**sound, **change}).passed for change in wrong)  # type: ignore[arg-type]
-    good = Row("c", "p", **sound).passed  # type: ignore[arg-type]
+    bad = sum(Row("c", "p", **{**sound, **change}).passed for change in wrong)
+    good = Row("c", "p", **sound).passed
     return Measurement(0, {"rows misjudged": float(bad + (not good))})
 
 

@@ -72,9 +72,9 @@ def _edge(region: Region) -> budget.Edge:
     for part in shapely.get_parts(outline):
         if not isinstance(part, shapely.Polygon):
             continue
-        for ring in (part.exterior, *part.interiors):
+        for number, ring in enumerate((part.exterior, *part.interiors)):
             points = shapely.get_coordinates(ring)[:-1]
-            body_left = shapely.is_ccw(ring) == (ring is part.exterior)
+            body_left = shapely.is_ccw(ring) == (number == 0)
             along = np.diff(np.vstack([points, points[:1]]), axis=0)
             before = np.roll(along, 1, axis=0)
             cross = before[:, 0] * along[:, 1] - before[:, 1] * along[:, 0]

@@ -19,12 +19,15 @@ SHARE = 0.8
 # Products of the operator in a solve: iterations of about 30, V-cycles of five products.
 _PRODUCTS = 200
 # Seconds a bond in a product, an offset of the family in the stability check, a bond of a particle
-# near the edge in the set-up, a bond that ends at the surface, and a bond beside a corner that is
-# tried for what the corner cuts out of it.
-_PRODUCT, _OFFSET, _EDGE, _ENDED, _TRIED = 1e-9, 3e-4, 3e-7, 1e-5, 1e-7
+# near the edge in the set-up, a bond that ends at the surface, one beside a corner that is tried
+# for what the corner cuts out of it, and what is found so (a chord).
+_PRODUCT, _OFFSET, _EDGE, _ENDED, _TRIED, _CHORD = 1e-9, 3e-4, 3e-7, 1e-5, 6e-8, 2.5e-5
 # The same in bytes, and of a particle's unknown.
 _OFFSET_BYTES, _EDGE_BYTES, _ENDED_BYTES, _UNKNOWN_BYTES = 4e4, 24.0, 500.0, 300.0
-_TRIED_BYTES = 20.0
+_CHORD_BYTES = 2000.0
+# Share of the tried bonds that are chords at a corner of a large body, and what it grows by where
+# the horizon is twice as long as the body is wide: then they pass through from side to side.
+_CUT, _THROUGH = 0.008, 0.03
 
 
 @dataclass(frozen=True)
@@ -35,9 +38,9 @@ class Cost:
     ----------
     particles, family : float
         Number of particles and of bonds of each.
-    ended, tried : float
-        Bonds that end at edges, faces of cracks and interfaces; and bonds beside corners that may
-        pass through them.
+    ended, chords : float
+        Bonds that end at edges, faces of cracks and interfaces; and those that corners cut out of
+        bonds between missing particles.
     memory : float, bytes
     seconds : float
         Of set-up and one solve.
@@ -46,7 +49,7 @@ class Cost:
     particles: float
     family: float
     ended: float
-    tried: float
+    chords: float
     memory: float
     seconds: float
 
@@ -145,13 +148,15 @@ def estimate(
     # Of every cell within a horizon of a corner half of the bonds.
     corners = edge.corners * extrapolated + inner.corners
     tried = 0.5 * family * min(corners * (2 * m + 3) ** 2, grid)
+    chords = tried * (_CUT + _THROUGH * min(max(m / min(columns, rows) - 1.0, 0.0), 1.0))
     bonds = particles * family
     memory = _OFFSET_BYTES * family + _UNKNOWN_BYTES * particles * components + 50 * grid
     memory += _EDGE_BYTES * near * family + _ENDED_BYTES * ended + 16 * bonds * growing
-    memory += _TRIED_BYTES * tried
-    seconds = _OFFSET * family + _EDGE * near * family + _ENDED * ended + _TRIED * tried
+    memory += _CHORD_BYTES * chords
+    seconds = _OFFSET * family + _EDGE * near * family + _ENDED * ended
+    seconds += _TRIED * tried + _CHORD * chords
     seconds += _PRODUCT * _PRODUCTS * bonds
-    return Cost(particles, family, ended, tried, memory, seconds)
+    return Cost(particles, family, ended, chords, memory, seconds)
 
 
 def free_memory() -> float:

@@ -45,6 +45,8 @@ _SLICE = 0.3
 _SAME = 1e-7
 # Share of an edge within which a point on it counts as at its node.
 _AT_NODE = 4e-5
+# Lines whose passages through the body are looked for at once.
+_LINES = 100_000
 # Angle (rad) within which two directions are one, and in which who sits in a joint counts as lying.
 _NARROW, _UPWARDS = 1e-4, 0.5 * np.pi - 1e-3
 
@@ -378,8 +380,22 @@ class Outline:
         position, share : ndarray, shape (n, 2)
             On the edges and along the line, 0 to 1.
         """
-        first, last = self.nodes[self.edges[:, 0]], self.nodes[self.edges[:, 1]]
         tree = shapely.STRtree(self._lines)
+        near = _SAME * float(np.abs(bond).max(initial=0.0))
+        found = [
+            self._passing(tree, start[begin : begin + _LINES], bond[begin : begin + _LINES], near)
+            for begin in range(0, max(len(start), 1), _LINES)
+        ]
+        for number, part in enumerate(found):
+            part[0][:] += number * _LINES
+        line, edge, position, share = (np.concatenate(each) for each in zip(*found, strict=True))
+        return line, edge, position, share
+
+    def _passing(
+        self, tree: shapely.STRtree, start: Array, bond: Array, near: float
+    ) -> tuple[Indices, Indices, Array, Array]:
+        """As `passages`, of a few lines; within `near` (m) of an edge they run along it."""
+        first, last = self.nodes[self.edges[:, 0]], self.nodes[self.edges[:, 1]]
         line, met = tree.query(shapely.linestrings(np.stack([start, start + bond], axis=1)))
         where, depth, valid = meet(start[line], bond[line], first[met], last[met])
         line, met, where, depth = line[valid], met[valid], where[valid], depth[valid]
@@ -399,7 +415,6 @@ class Outline:
             np.einsum("ki,ki->k", way, outward[:, 1]) > 0
         )
         middle = start[lines[count == 2]] + depth[pair].mean(axis=1)[:, None] * way
-        near = _SAME * float(np.abs(bond).max(initial=0.0))
         whole[tree.query(shapely.points(middle), predicate="dwithin", distance=near)[0]] = False
         return (
             lines[count == 2][whole],

@@ -5,6 +5,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cmverify.exchange.budget import estimate, free_memory
+from solver import Family, rectangle
+from solver.bonds import Bonds
+from solver.geometry import Lattice
+from tests.solver.bodies import few
 
 SURFACES = st.sampled_from(["none", "volume", "extrapolated"])
 
@@ -38,3 +42,19 @@ def test_the_constants_are_those_measured(h, m, low, high):
 
 def test_some_memory_is_free():
     assert free_memory() > 0
+
+
+@few
+@given(st.integers(2, 14), st.integers(2, 14), st.floats(1, 9), st.booleans())
+def test_bonds_are_counted_over_what_a_body_can_hold(columns, rows, m, turned):
+    """Bodies of some cells, with horizons up to several times their size."""
+    h = 0.5
+    region = rectangle(columns * h, rows * h, angle=0.4 if turned else 0.0)
+    family = Family(m, h)
+    bonds = Bonds(Lattice(region, h, family.reach).centred, family, [], "extrapolated").ended
+    cost = estimate(columns * h, rows * h, h, m, 3, "extrapolated")
+    assert bonds is not None
+    assert len(bonds) / 3 < cost.ended < 4 * len(bonds) + 50 * family.size
+    found = 0 if bonds.chords is None else len(bonds.chords.offset)
+    assert found < 3 * cost.chords + 100
+    assert cost.chords < 10 * found + 2000

@@ -139,8 +139,9 @@ def test_both_agree(tmp_path, name):
 EXAMPLES = {
     "cooling": {"temperature": 0.11},
     "modes": {"mode 1 frequency": 4.5e-3, "mode 6 frequency": 6e-3, "mode 6 displacement": 5e-3},
-    "fuse": {"potential": 3e-3, "joule_heat": 0.06, "power supplied": 1e-3},
+    "fuse": {"potential": 3e-3, "joule_heat": 0.06, "temperature": 0.09, "power supplied": 1e-3},
     "strain_gauge": {"displacement": 0.05, "relative change of resistance": 2e-3},
+    "pulse": {"displacement": 0.2},
     "heated_strip": {"displacement": 0.3},
 }
 
