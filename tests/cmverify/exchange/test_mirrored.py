@@ -74,7 +74,7 @@ SCENES = {
          "damping = [0.2, 0.02]": ("damping = [0.6, 0.1]", "displacement"),
          "cos(4 * t)": ("cos(5 * t)", "displacement"),
          "0.02 * sin": ("0.04 * sin", "displacement"),
-         "sin(1.5 * x)": ("sin(3 * x)", "velocity")},
+         "0.01 * sin(1.5": ("0.04 * sin(1.5", "velocity")},
     ),
     "joule": (
         SOLID + LAYER + "[joule]\n" + WARM
