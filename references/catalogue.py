@@ -261,8 +261,8 @@ def catalogue() -> dict[str, Reference]:
                 "steps": 4,
                 "elements": 20,
             },
-            # A few minutes: its parts are tested by themselves.
-            spot=None,
+            spot={"degrees": [60.0]},
+            axis="degrees",
         ),
     ]
     return {entry.name: entry for entry in entries}
