@@ -2,32 +2,43 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
     from solver import Scene
 
-SCENES = ["crack tip a/120", "conduction a/120"]
+#: Most particles of the bulk; one unknown; beyond the caches; special particles only.
+SCENES = ["crack tip a/120", "conduction a/120", "crack tip a/480", "special particles a/120"]
 
 
 def _scene(name: str) -> Scene:
-    """The two scenes of the suite at 45,244 particles, with data that cost nothing to evaluate."""
+    """Scenes of the suite at 45,244 particles or more, with data that cost nothing to evaluate."""
     from cmverify.cases import crack_tip, disc
     from cmverify.cases.common.scenes import cracked_disc
     from solver import ConductivityTensor, Cosine, ElasticTensor, Scene, Support
     from solver import disc as disc_region
 
-    region, spacing = disc_region(1.0), 1.0 / 120
-    if name.startswith("crack"):
+    resolution = int(name.rpartition("/")[2])
+    region, spacing = disc_region(1.0), 1.0 / resolution
+    if not name.startswith("conduction"):
         held = Support.layer(cells=5.5, displacement=(0.0, 0.0), rotation=0.0)
-        return cracked_disc(ElasticTensor(crack_tip.STIFFNESS), 120, held, m=5)
+        scene = cracked_disc(ElasticTensor(crack_tip.STIFFNESS), resolution, held, m=5)
+        # Every bond has a factor of its own, as beside edges and cracks.
+        return replace(scene, factors=_sound) if name.startswith("special") else scene
     held = Support.layer(cells=5.5, temperature=0.0)
     conductor = ConductivityTensor(disc.CONDUCTIVITY)
     law = Cosine(disc.EXPONENT)
     return Scene(region, spacing, conductor, [held], m=5, calibration="positive", law=law)
+
+
+def _sound(bonds: Any, moduli: Any) -> Any:
+    from solver.bonds.factors import Factors
+
+    return Factors(bonds.strengths_of(np.arange(bonds.lattice.count)))
 
 
 class Product:

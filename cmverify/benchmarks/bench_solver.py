@@ -10,6 +10,8 @@ from time import process_time
 
 import numpy as np
 
+from cmverify.studies.speed import peers
+
 # CPU seconds of a first solve in a process, its import left out.
 _FIRST_USE = """
 from time import process_time
@@ -179,6 +181,86 @@ class CalibratedTip:
         self.scene.solve(1e-8)
 
 
+class Scale:
+    """What a particle costs as the lattice grows."""
+
+    params = (120, 480)
+    param_names = ("a over spacing",)
+    timeout = 300.0
+
+    def setup(self, resolution: int) -> None:
+        """Compile, and keep the scene."""
+        from cmverify.studies.speed.scenes import crack_tip
+
+        crack_tip(30).solve(1e-8)
+        self.scene = crack_tip(resolution)
+
+    def track_cost(self, resolution: int) -> float:
+        """CPU time a particle, set-up and solve."""
+        begun = process_time()
+        found = self.scene.solve(1e-8)
+        return 1e6 * (process_time() - begun) / found.statistics.particles
+
+    def peakmem_solve(self, resolution: int) -> None:
+        """Peak resident memory."""
+        self.scene.solve(1e-8)
+
+    track_cost.unit = "µs"  # type: ignore[attr-defined]
+
+
+class LinearAlgebra:
+    """Building a body with bonds that end at the surface, while BLAS has threads at hand."""
+
+    timeout = 120.0
+
+    def track_ratio(self) -> float:
+        """CPU seconds with all of them over those with one: more only where a part escapes."""
+        from dataclasses import replace
+
+        from threadpoolctl import threadpool_limits
+
+        from cmverify.studies.speed.scenes import static_scenes
+
+        plate = replace(static_scenes(120)["plate with a hole"], surface="extrapolated")
+        spent = []
+        for limit in (1, 1, None):  # the first compiles
+            with threadpool_limits(limits=limit, user_api="blas"):
+                begun = process_time()
+                plate.discretise()
+                spent.append(process_time() - begun)
+        return spent[2] / spent[1]
+
+
+class Peers:
+    """What others take over what we take, where they are installed."""
+
+    params = (
+        ["crack tip", "heat"],
+        ["SciPy CG, block Jacobi, CSR", "MKL PARDISO", *peers.PEERS],
+    )
+    param_names = ("scene", "solver")
+    timeout = 600.0
+
+    def setup_cache(self) -> dict[str, dict[str, float]]:
+        """All of them in one run."""
+        from cmverify.studies.speed import measure
+
+        found = {"crack tip": measure.solvers(60, repeats=1), "heat": measure.heat(60, repeats=1)}
+        return {
+            scene: {row.name: float(row.values["slower"]) for row in rows}
+            for scene, rows in found.items()
+        }
+
+    def setup(self, found: dict[str, dict[str, float]], scene: str, solver: str) -> None:
+        """Skipped where a solver is not installed."""
+        if solver not in found[scene]:
+            raise NotImplementedError
+
+    def track_ratio(self, found: dict[str, dict[str, float]], scene: str, solver: str) -> float:
+        """CPU seconds over the bond solver's, assembly included."""
+        return found[scene][solver]
+
+
 class VCycle:
     """One application of the two-level preconditioner, in single and in double precision."""
 
@@ -205,7 +287,7 @@ class VCycle:
 class Preparation:
     """The coarse matrix of the crack tip, and all before the iterations of a plate with a hole."""
 
-    params = (60, 120)
+    params = (50, 100, 200, 400)
     param_names = ("a over spacing",)
     timeout = 120.0
 
@@ -228,6 +310,23 @@ class Preparation:
     def time_galerkin(self, resolution: int) -> None:
         """Seconds of the coarse matrix."""
         self.hats.galerkin()
+
+    def track_setup_over_solve(self, resolution: int) -> float:
+        """CPU seconds before the iterations over those of them to 1e-10; the larger of both."""
+        from solver.analyses.statics import solve
+        from solver.linear import Task, TwoLevel, method
+
+        ratios = []
+        for plate in self.plates.values():
+            solve(plate.discretise(constrained=True), 1e-10)
+            begun = process_time()
+            problem = plate.discretise(constrained=True)
+            rhs, inverse = problem.right_hand_side(), TwoLevel(problem.operator)
+            ready = process_time()
+            task = Task(rhs, np.zeros_like(rhs), 1e-10, 1000)
+            method.iterate(problem.operator, problem.stability.kind, inverse, task)
+            ratios.append((ready - begun) / (process_time() - ready))
+        return max(ratios)
 
     def track_extrapolated_over_volume(self, resolution: int) -> float:
         """CPU seconds with bonds that end at the surface over those with volume factors."""

@@ -43,7 +43,8 @@ def test_both_get_to_the_error_with_the_coarsest_that_does() -> None:
 
 
 def test_calibrated_tips_and_graded_meshes_get_to_one_error(monkeypatch) -> None:
-    monkeypatch.setattr(accuracy, "TIP_RESOLUTIONS", (20, 25))
+    monkeypatch.setattr(accuracy, "TIP_RESOLUTIONS", (20,))
+    monkeypatch.setattr(accuracy, "TIP_ELEMENTS", (8,))
     rows = accuracy.at_a_tip((2e-3,), rounds=1)
     assert [row.name.split(",")[:2] for row in rows] == [
         ["mode I", " bond/calibrated tip"], ["mode I", " fem/P2 graded"],
