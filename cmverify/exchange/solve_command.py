@@ -41,6 +41,7 @@ def solve(
     from cmverify.exchange import comparison, scene_file
     from cmverify.exchange.export import check_writable
     from cmverify.exchange.output import existing, existing_series
+    from cmverify.exchange.told import lines
     from cmverify.run.progress import share_done
 
     screen = console()
@@ -86,10 +87,9 @@ def solve(
             "no result was written; a run whose table names a checkpoint goes on from there with "
             "the same command"
         )
-    warnings = said.pop("warnings", ())
-    for name, value in said.items():
-        screen.print(f"{name.replace('_', ' '):<16}{_plain(value)}", soft_wrap=True)
-    for warning in warnings:
+    for text in lines(said, request.scene.thickness is not None):
+        screen.print(text, soft_wrap=True)
+    for warning in said.get("warnings", ()):
         line = Text("warning         ", style="yellow").append(warning, style="default")
         screen.print(line, soft_wrap=True)
     if beside is not None:
@@ -97,9 +97,3 @@ def solve(
 
         terminal.print_differences(screen, beside)
     screen.print("wrote", *map(str, paths), soft_wrap=True)
-
-
-def _plain(value: object) -> str:
-    if isinstance(value, float):
-        return f"{value:.5g}"
-    return ", ".join(map(_plain, value)) if isinstance(value, list | tuple) else str(value)

@@ -119,7 +119,14 @@ class Thermoelastic(Result):
             "end": float(self.times[-1]),
             "dissipated": float(self.dissipated[-1]),
             "imbalance": float(np.abs(self.imbalance).max()) / (scale or 1.0),
+            "warnings": self.warnings,
         }
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the answer leaves out or settles by a rule, of the motion and of the heat."""
+        motion = self.body.warnings + self.body.overlaps(self.unknowns[-1])
+        return tuple(dict.fromkeys(motion + self.heat.warnings))
 
 
 def run(

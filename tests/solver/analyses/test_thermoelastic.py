@@ -58,6 +58,16 @@ def test_energy_is_kept_but_for_what_conduction_loses(surface, held):
     assert {"displacement", "rotation", "temperature", "stress11"} < set(run.fields())
 
 
+def test_what_motion_or_heat_leave_out_is_told():
+    """A small body without treatment, and sinks thinner than a horizon."""
+    thin = replace(
+        HEAT, surface="none", supports=[Support.where(lambda x, y: x > 0.42, temperature=0)]
+    )
+    told = kicked(replace(BODY, surface="none"), thin, steps=1).summary()["warnings"]
+    assert any("bonds of free particles" in one and "surface='none'" in one for one in told)
+    assert any("what is prescribed about" in one for one in told)
+
+
 def test_stress_is_that_of_the_mechanical_strain():
     """A body held in a homogeneous strain, warmed evenly: σ = C (ε − A ϑ)."""
     slope = np.array([[0.1, -0.3], [0.2, 0.4]])
