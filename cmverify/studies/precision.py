@@ -45,6 +45,8 @@ VARIANTS: tuple[tuple[str, dict[str, Any], float], ...] = (
 )
 #: Seconds after which a point is repeated no more, and the fewest repetitions.
 ENOUGH, FEWEST = 2.0, 3
+#: Errors that differ by less, relatively, are alike: two codes on one mesh differ by rounding.
+ALIKE = 1e-3
 #: Seconds between looks at the memory.
 _LOOK = 2e-3
 
@@ -275,7 +277,8 @@ def judged(points: Iterable[Point]) -> list[Point]:
         rivals = [
             q
             for q in known
-            if (q.case, q.problem) == (p.case, p.problem) and q is not p and q.error <= p.error
+            if (q.case, q.problem) == (p.case, p.problem) and q is not p
+            if q.error <= p.error * (1.0 + ALIKE)
         ]
         standing: Standing = "front"
         if any(q.slow < p.fast for q in rivals):
@@ -287,10 +290,10 @@ def judged(points: Iterable[Point]) -> list[Point]:
 
 
 def seconds_to(points: Iterable[Point], error: float) -> dict[str, tuple[float, float]]:
-    """Least median seconds of each method to an error or a better one, with that error."""
+    """Least median seconds of each method to an error alike or a better one, with that error."""
     best: dict[str, tuple[float, float]] = {}
     for p in points:
-        if p.error <= error and p.seconds < best.get(p.method, (math.inf, 0.0))[0]:
+        if p.error <= error * (1.0 + ALIKE) and p.seconds < best.get(p.method, (math.inf, 0.0))[0]:
             best[p.method] = (p.seconds, p.error)
     return best
 

@@ -64,6 +64,15 @@ def test_a_posed_problem_is_varied_one_choice_at_a_time():
         precision.vary(case, pose, {"spacing": 0.07}, 1e-6, 10)
 
 
+def test_errors_that_rounding_sets_apart_are_alike():
+    """A second code on the same mesh, half as quick: its error is less by rounding only."""
+    slower = replace(P, method="b", error=P.error * (1 - 1e-9), seconds=2.0, fast=1.9, slow=2.1)
+    assert standings(P, slower) == ["front", "beaten"]
+    better = replace(slower, error=P.error * (1 - 1e-2))
+    assert standings(P, better) == ["front", "front"]
+    assert set(precision.seconds_to([P, slower], slower.error)) == {"a", "b"}
+
+
 def test_only_points_of_one_problem_are_compared():
     hole = replace(P, problem="hole", seconds=9.0, fast=8.0, slow=10.0)
     assert standings(P, hole) == ["front", "front"]
