@@ -32,7 +32,13 @@ class Threaded:
         self.py_func = function
         self.__name__, self.__doc__ = function.__name__, function.__doc__
         # Numba keeps by name what it compiles, whatever its options.
-        twin = FunctionType(function.__code__, function.__globals__, function.__name__)
+        twin = FunctionType(
+            function.__code__,
+            function.__globals__,
+            function.__name__,
+            function.__defaults__,
+            function.__closure__,
+        )
         twin.__qualname__, twin.__module__ = f"{function.__qualname__}_alone", function.__module__
         self.alone = _compiled(twin, uses, options)
         self.shared = _compiled(function, uses, options | {"parallel": True})

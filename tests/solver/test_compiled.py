@@ -6,9 +6,20 @@ import subprocess
 import sys
 
 import numba as nb
+import numpy as np
 import pytest
 
-from solver import compiled
+from solver import (
+    ConductivityTensor,
+    Crack,
+    ElasticTensor,
+    Scene,
+    Support,
+    compiled,
+    fracture,
+    rectangle,
+)
+from solver.analyses.statics import solve
 from solver.fracture import bond_kernels
 from solver.material import strains
 
@@ -98,6 +109,36 @@ def test_a_scene_compiles_only_what_it_uses():
         assert set(plain) <= allowed, scene
         assert len(set(plain)) == len(plain), scene
         assert not set(names) & {"scatter", "relax", "elastic_product"}, scene
+
+
+@pytest.mark.parametrize("kind", ["elastic", "heat", "growing"])
+def test_what_is_compiled_for_one_thread_and_for_many_gives_the_same_bits(kind, monkeypatch):
+    """Which of the two a body gets depends on its size and on the machine; no answer may."""
+    solid, cut = ElasticTensor.isotropic(10.0, 0.25), Crack((-1.5, 0.01), (-0.2, 0.01))
+    held = Support.layer(cells=2.5, displacement=lambda x, y: np.stack([0.1 * x, y], -1))
+    warm = Support.layer(cells=2.5, temperature=lambda x, y: x * y)
+
+    def answer():
+        if kind == "heat":
+            body = Scene(
+                rectangle(2.0, 1.0), 1 / 20, ConductivityTensor.isotropic(1.0), [warm], m=2
+            )
+            return solve(body.discretise(), preconditioning="two-level").unknowns
+        body = Scene(rectangle(2.0, 1.0), 1 / 20, solid, [held], m=2, cracks=[cut])
+        if kind == "elastic":
+            return solve(body.discretise(), preconditioning="two-level").unknowns
+        run = fracture.grow(body, 1.0, max_solves=4)
+        return np.concatenate([run.body.x, run.history.array.ravel()])
+
+    found = []
+    for name in ("alone", "shared"):
+        monkeypatch.setattr(
+            compiled.Threaded,
+            "__call__",
+            lambda self, *given, name=name: getattr(self, name)(*given),
+        )
+        found.append(answer())
+    np.testing.assert_array_equal(*found)
 
 
 def test_a_full_disk_does_not_end_a_solve(monkeypatch):
