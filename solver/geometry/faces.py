@@ -27,7 +27,7 @@ from .rings import CLOSE, SHARP
 # drawn beyond what they meet.
 _GRID, _REST = 4.0, 16.0
 # Cells from a tip on in which nodes on a face are close, and slope below which it is along a row.
-# (Errors of a stress along the crack are 0.5 to 0.9 times smaller with far nodes at slopes from
+# (Errors of a stress along the crack are 0.5 to 0.9 times as large with far nodes at slopes from
 # 0.02 on, and larger below: there the face sees the same bonds for fifty cells.)
 _BESIDE_TIP, _ALONG = 3.0, 0.02
 # Turn (rad) below which a crack is straight on.

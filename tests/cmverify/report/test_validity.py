@@ -1,6 +1,7 @@
 """The matrix says what checks cover, and shows what they do not."""
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,12 +9,14 @@ from cmverify.case import Level, Method, Setting
 from cmverify.cases import registry
 from cmverify.report import summary, validity
 from cmverify.report.build import build
+from cmverify.report.wording import tidy
 from cmverify.run.worker import measure
 from solver import ConductivityTensor, Scene, Support, rectangle
 from tests.cmverify.report.test_build import INFO, records
 from tests.cmverify.toy_registry import toy, trapezium
 
 DOCUMENTED = Path(__file__).parents[3] / "docs" / "validity.json"
+BOUND = re.compile(r"(\S+): (.+) ≤ (\S+) at .+/(\d+) \(\S+\)")
 VOLUME = Setting("elasticity", "lattice", "volume", 5.0, "constant")
 EXTRAPOLATED = Setting("heat conduction", "positive", "extrapolated", 2.5, "conical")
 
@@ -62,6 +65,21 @@ def test_the_documentation_shows_places_and_cases_that_are():
     for one in places:
         held, _, asked = one["held"].partition("/")
         assert held == (asked or "0"), f"the documentation shows a check that fails: {one}"
+
+
+def test_the_documentation_shows_bounds_that_are_declared():
+    """A bound that is changed must be changed there: by a run, as the page says."""
+    cases = {case.name: case for case in registry.all_cases()}
+    said = {one["bound"] for one in json.loads(DOCUMENTED.read_text(encoding="utf-8"))} - {""}
+    assert len(said) > 10
+    for text in said:
+        name, quantity, bound, n = BOUND.fullmatch(text).groups()
+        declared = {
+            tidy(f"{check.bound_at(int(n)):.2g}")
+            for check in cases[name].checks
+            if check.quantity == quantity and check.bound_at(int(n)) is not None
+        }
+        assert bound in declared, text
 
 
 def empty_places():
