@@ -74,7 +74,9 @@ def build_(names: Names = None) -> None:
 
 @app.command()
 def check(names: Names = None) -> None:
-    """Verify checksums and records, regenerate what is cheap and compare.
+    """Verify checksums and records, make a part of each reference again (all of some) and compare.
+
+    Some minutes for all; the paths of the compact tension take more than two of them.
 
     The exit code is 1 if anything is wrong.
     """
