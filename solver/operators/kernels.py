@@ -34,6 +34,8 @@ import numba as nb
 import numpy as np
 
 from ..compiled import kernel
+from . import lanes
+from .lanes import load, store, width
 
 # OpenMP has the cheapest fork and join of Numba's layers; the others are fallbacks.
 setattr(nb.config, "THREADING_LAYER_PRIORITY", ["omp", "tbb", "workqueue"])  # noqa: B010
@@ -43,7 +45,27 @@ _U = np.uint64
 _FAST = {"contract", "nsz"}
 #: What counts as zero beside values of size one in single precision.
 NEGLIGIBLE = 1e-30
-_OPTIONS: Any = {"parallel": True, "fastmath": _FAST, "nogil": True}
+_OPTIONS: Any = {
+    "uses": (lanes.__file__,),
+    "parallel": True,
+    "fastmath": _FAST,
+    "nogil": True,
+}
+# Longest run of special particles, in values of lanes, that is taken lane by lane: what is read
+# most, the factors, lies in long rows of which each value reads a piece only. Narrow registers
+# lose more by that than they gain.
+_LONGEST = np.uint64(2 if lanes.bytes_of_a_register() >= 32 else 0)
+#: Half offsets whose bonds are summed by themselves.
+_TOGETHER = np.uint64(16)
+# Of what kernels call. Arrays are theirs: counting who holds them takes as long as a dozen bonds.
+_WITHIN: Any = {
+    "uses": (lanes.__file__,),
+    "fastmath": _FAST,
+    "nogil": True,
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+    "_nrt": False,
+}
 
 
 @kernel(**_OPTIONS)
@@ -65,40 +87,34 @@ def elastic_product(grid, segments, steps, blocks, bulk, diagonal, factors, out)
     factors : float64 (2h, f)
     out : float64 (3, n)
     """
+    wide, half = width(grid), steps.size
     ux, uy, th = grid[0], grid[1], grid[2]
-    half = steps.size
-    for s in nb.prange(segments.shape[0]):
+    fx, fy, mo = out[0], out[1], out[2]
+    for number in nb.prange(segments.shape[0]):
+        s = _U(number)
         cell, size, first = segments[s, 0], segments[s, 1], segments[s, 2]
         kind, column, fcol = segments[s, 3], segments[s, 4], segments[s, 5]
         phase = segments[s, 6]
-        fx, fy, mo = out[0], out[1], out[2]
-        if kind == _U(0):
-            for j in range(size):
-                x, y, r = ux[cell + j], uy[cell + j], th[cell + j]
-                fx[first + j] = bulk[phase, 0] * x + bulk[phase, 1] * y
-                fy[first + j] = bulk[phase, 1] * x + bulk[phase, 2] * y
-                mo[first + j] = bulk[phase, 5] * r
+        if kind != _U(2) or size <= _LONGEST * wide:
+            # All lanes of the bulk, then what is left, and what is special: each with its factors.
+            masked = size - size % wide if kind != _U(2) else _U(0)
+            for j in range(_U(0), masked, wide):
+                _elastic_lanes(
+                    s, j, None, grid, segments, steps, blocks, bulk, diagonal, factors, out
+                )
+            for j in range(masked, size, wide):
+                used = min(wide, size - j)
+                _elastic_lanes(
+                    s, j, used, grid, segments, steps, blocks, bulk, diagonal, factors, out
+                )
         else:
+            # Bond by bond, along all of the run.
             for j in range(size):
                 x, y, r = ux[cell + j], uy[cell + j], th[cell + j]
                 k = column + j
                 fx[first + j] = diagonal[0, k] * x + diagonal[1, k] * y + diagonal[3, k] * r
                 fy[first + j] = diagonal[1, k] * x + diagonal[2, k] * y + diagonal[4, k] * r
                 mo[first + j] = diagonal[3, k] * x + diagonal[4, k] * y + diagonal[5, k] * r
-        if kind != _U(2):
-            for o in range(half):
-                a, b, c = blocks[phase, o, 0], blocks[phase, o, 1], blocks[phase, o, 2]
-                tx, ty, e = blocks[phase, o, 3], blocks[phase, o, 4], blocks[phase, o, 5]
-                ahead, behind = cell + steps[o], cell - steps[o]
-                for j in range(size):
-                    x1, x2 = ux[ahead + j], ux[behind + j]
-                    y1, y2 = uy[ahead + j], uy[behind + j]
-                    r1, r2 = th[ahead + j], th[behind + j]
-                    sx, sy, dr = x1 + x2, y1 + y2, r1 - r2
-                    fx[first + j] += tx * dr - a * sx - b * sy
-                    fy[first + j] += ty * dr - b * sx - c * sy
-                    mo[first + j] += e * (r1 + r2) - tx * (x1 - x2) - ty * (y1 - y2)
-        else:
             for o in range(half):
                 a, b, c = blocks[phase, o, 0], blocks[phase, o, 1], blocks[phase, o, 2]
                 tx, ty, e = blocks[phase, o, 3], blocks[phase, o, 4], blocks[phase, o, 5]
@@ -113,6 +129,62 @@ def elastic_product(grid, segments, steps, blocks, bulk, diagonal, factors, out)
                     fx[first + j] += tx * dr - a * sx - b * sy
                     fy[first + j] += ty * dr - b * sx - c * sy
                     mo[first + j] += e * (r1 + r2) - tx * (x1 - x2) - ty * (y1 - y2)
+
+
+@kernel(**_WITHIN)
+def _elastic_lanes(s, j, used, grid, segments, steps, blocks, bulk, diagonal, factors, out):
+    """Rows of neighbours from the j-th of a segment on: all lanes, or the first `used`.
+
+    Only the latter have factors. Component by component, so that all sums stay in registers.
+    """
+    cell, kind, phase = segments[s, 0] + j, segments[s, 3], segments[s, 6]
+    half = steps.size
+    x, y, r = load(grid, 0, cell, used), load(grid, 1, cell, used), load(grid, 2, cell, used)
+    if kind == _U(0):
+        fx = bulk[phase, 0] * x + bulk[phase, 1] * y
+        fy = bulk[phase, 1] * x + bulk[phase, 2] * y
+        mo = bulk[phase, 5] * r
+    else:
+        k = segments[s, 4] + j
+        xy, xr, yr = (
+            load(diagonal, 1, k, used),
+            load(diagonal, 3, k, used),
+            load(diagonal, 4, k, used),
+        )
+        fx = load(diagonal, 0, k, used) * x + xy * y + xr * r
+        fy = xy * x + load(diagonal, 2, k, used) * y + yr * r
+        mo = xr * x + yr * y + load(diagonal, 5, k, used) * r
+    fcol = segments[s, 5] + j
+    # Some bonds have a sum of their own, so that rounding grows with their number only slowly.
+    for block in range(_U(0), half, _TOGETHER):
+        px, py, pm = x - x, y - y, r - r
+        for o in range(block, min(block + _TOGETHER, half)):
+            a, b, c = blocks[phase, o, 0], blocks[phase, o, 1], blocks[phase, o, 2]
+            tx, ty, e = blocks[phase, o, 3], blocks[phase, o, 4], blocks[phase, o, 5]
+            ahead, behind = cell + steps[o], cell - steps[o]
+            one, other = load(grid, 0, ahead, used), load(grid, 0, behind, used)
+            if used is not None and kind == _U(2):
+                g1, g2 = load(factors, o, fcol, used), load(factors, o + half, fcol, used)
+                one, other = g1 * one, g2 * other
+            both = one + other
+            px, py, pm = px - a * both, py - b * both, pm - tx * (one - other)
+            one, other = load(grid, 1, ahead, used), load(grid, 1, behind, used)
+            if used is not None and kind == _U(2):
+                g1, g2 = load(factors, o, fcol, used), load(factors, o + half, fcol, used)
+                one, other = g1 * one, g2 * other
+            both = one + other
+            px, py, pm = px - b * both, py - c * both, pm - ty * (one - other)
+            one, other = load(grid, 2, ahead, used), load(grid, 2, behind, used)
+            if used is not None and kind == _U(2):
+                g1, g2 = load(factors, o, fcol, used), load(factors, o + half, fcol, used)
+                one, other = g1 * one, g2 * other
+            apart = one - other
+            px, py, pm = px + tx * apart, py + ty * apart, pm + e * (one + other)
+        fx, fy, mo = fx + px, fy + py, mo + pm
+    first = segments[s, 2] + j
+    store(out, 0, first, used, fx)
+    store(out, 1, first, used, fy)
+    store(out, 2, first, used, mo)
 
 
 @kernel(**_OPTIONS)
