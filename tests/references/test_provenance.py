@@ -170,6 +170,16 @@ def test_regenerating_a_part_finds_its_rows(folder: Path) -> None:
     assert regenerate_and_compare(EXAMPLE, load("squares", folder)) == 0.0
 
 
+def test_arrays_on_one_side_only_are_refused(folder: Path) -> None:
+    stored = load("squares", folder)
+    more = replace(stored, arrays={**stored.arrays, "cubes": np.ones(3)})
+    with pytest.raises(DamagedReferenceError, match="no array 'cubes' is made any more"):
+        regenerate_and_compare(EXAMPLE, more)
+    fewer = replace(stored, arrays={name: stored.arrays[name] for name in [EXAMPLE.axis or ""]})
+    with pytest.raises(DamagedReferenceError, match="the stored file has no array"):
+        regenerate_and_compare(EXAMPLE, fewer)
+
+
 def test_one_per_cent_is_seen(folder: Path) -> None:
     off = Reference(
         "squares", "", "", squares, {"numbers": [1, 2, 3], "factor": 1.01}, EXAMPLE.spot, "n"
