@@ -14,6 +14,7 @@ UNITS = {
     "error": "K",
     "advance": "m",
     "tip": "m",
+    "first drop": "V",
 }
 #: The same per unit thickness, and of a body that has one.
 PLATES = {
