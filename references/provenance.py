@@ -302,9 +302,8 @@ def regenerate_and_compare(reference: Reference, stored: Stored) -> float:
         axis = stored.arrays[reference.axis].tolist()
         rows = [axis.index(value) for value in made.arrays[reference.axis].tolist()]
     worst = 0.0
-    # Without an axis, a part is one of several arrays.
-    whole = reference.axis or not reference.spot
-    for name in stored.arrays if whole else ():
+    # A part may be of some arrays only.
+    for name in stored.arrays if not reference.spot else ():
         if name not in made.arrays:
             raise DamagedReferenceError(f"{stored.name}: no array {name!r} is made any more")
     for name, array in made.arrays.items():
