@@ -136,9 +136,10 @@ def waves(request: Request, whole: Any, ours: dict[str, Array], *meshes: Mirror)
     alpha, beta = (float(part) for part in options.get("damping", (0.0, 0.0)))
     step, span = float(whole.statistics.step), times[-1] - start
     if span > _MOST_STEPS * step:
+        less = "longer steps" if options.get("scheme") == "newmark" else "scheme = 'newmark'"
         raise ValueError(
             f"half of the lattice's step would be {2 * span / step:.2g} steps of theirs, and they "
-            f"take {2 * _MOST_STEPS:g}: end earlier, or by scheme = 'newmark'"
+            f"take {2 * _MOST_STEPS:g}: end earlier, or take {less}"
         )
     moving = any(support.timed for support in scene.supports)
     driven = any(load.timed for load in scene.loads)

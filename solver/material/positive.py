@@ -1,9 +1,10 @@
 """Non-negative moduli with exact moments, as close as can be to a smooth law.
 
-minimise |x − x₀|² subject to A x = d and x ≥ 0: strictly convex, a hundred unknowns, and wanted
-to machine precision, which general solvers do not give. SciPy's non-negative least squares says
-whether a solution exists and from which active set to start; the active set is then finished by
-exact steps on the optimality conditions.
+minimise |x − x₀|² subject to A x = d and x ≥ 0: strictly convex, a hundred unknowns and, at long
+horizons, thousands, and wanted to machine precision, which general solvers do not give. SciPy's
+non-negative least squares says whether a solution exists. The conditions are few: their multipliers
+λ, of which x = max(0, x₀ + Aᵀ λ), say from which active set to start; the active set is then
+finished by exact steps on the optimality conditions.
 """
 
 from __future__ import annotations
@@ -15,6 +16,9 @@ from ..arrays import Array
 from ..errors import CalibrationError
 
 _FEASIBLE = 1e-9
+# Steps of Newton's method for the multipliers, share of the moments that is left after them, and
+# what keeps a step finite while too few entries are positive.
+_STEPS, _LEFT, _FLAT = 100, 1e-9, 1e-10
 
 
 def _least_squares(matrix: Array, target: Array) -> tuple[Array, float]:
@@ -62,10 +66,13 @@ def closest(moments: Array, target: Array, wanted: Array) -> Array | None:
     if not feasible(a, d):
         return None
     size = len(wanted)
-    stiff = 1e5
-    start = _least_squares(
-        np.vstack([stiff * a, np.eye(size)]), np.concatenate([stiff * d, wanted])
-    )[0]
+    start = _by_multipliers(a, d, wanted)
+    if start is None:
+        # On the very edge of what is possible there are no finite ones.
+        stiff = 1e5
+        start = _least_squares(
+            np.vstack([stiff * a, np.eye(size)]), np.concatenate([stiff * d, wanted])
+        )[0]
     free = start > 0
     scale = max(np.abs(wanted).max(), start.max())
     for _ in range(20 * size):
@@ -99,3 +106,32 @@ def closest(moments: Array, target: Array, wanted: Array) -> Array | None:
     if np.abs(a @ x - d).max() > 1e-10 * np.abs(d).max() or x.min() < 0:
         return None
     return x
+
+
+def _by_multipliers(a: Array, d: Array, wanted: Array) -> Array | None:
+    """max(0, wanted + aᵀ λ) with the moments d, nearly; None if the search for λ does not end.
+
+    The dual, d·λ − ½|max(0, wanted + aᵀ λ)|², is concave in a few unknowns, and its gradient is
+    what the moments lack: Newton's method, each step as long as it climbs.
+    """
+    multiplier = np.zeros(len(d))
+    x = np.maximum(wanted, 0.0)
+    height = -0.5 * float(x @ x)
+    for _ in range(_STEPS):
+        gap = d - a @ x
+        if np.abs(gap).max() <= _LEFT * np.abs(d).max():
+            return x
+        part = a[:, x > 0]
+        slope = part @ part.T + _FLAT * np.eye(len(d))
+        step = np.linalg.solve(slope, gap)
+        share, least = 1.0, 1e-4 * float(gap @ step)
+        while True:
+            tried = np.maximum(wanted + a.T @ (multiplier + share * step), 0.0)
+            reached = float(d @ (multiplier + share * step)) - 0.5 * float(tried @ tried)
+            if reached >= height + share * least - 1e-14 * abs(height):
+                break
+            share *= 0.5
+            if share < 1e-9:
+                return None
+        multiplier, x, height = multiplier + share * step, tried, reached
+    return None

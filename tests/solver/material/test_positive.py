@@ -6,7 +6,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
-from solver import ConductivityTensor, Family
+from solver import ConductivityTensor, ElasticTensor, Family
 from solver.errors import CalibrationError
 from solver.material import ConductiveModuli, calibrate, effective_tensor, positive
 from solver.material.positive import closest, feasible
@@ -86,6 +86,36 @@ def test_moments_on_the_edge_of_the_possible(seed, m):
     assume(np.linalg.eigvalsh(matrix)[0] > 1e-6 * matrix.max())
     found = calibrate(family, ConductivityTensor(matrix), "positive")
     np.testing.assert_allclose(effective_tensor(family, found), matrix, atol=1e-10 * matrix.max())
+
+
+@exact
+@given(st.integers(0, 10**6), st.integers(1, 6), st.integers(8, 30), st.booleans())
+def test_where_the_search_starts_makes_no_difference(seed, rows, size, signed):
+    rng, moments, wanted = problem(seed, rows, size, signed)
+    target = moments @ np.where(rng.random(size) < 0.6, rng.random(size), 0.0)
+    found = closest(moments, target, wanted)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(positive, "_by_multipliers", lambda *_: None)
+        other = closest(moments, target, wanted)
+    assert found is not None
+    assert other is not None
+    np.testing.assert_allclose(found, other, rtol=0, atol=1e-10 * other.max())
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 1 / 3])
+def test_long_horizons_are_searched_for_multipliers_only(monkeypatch, nu):
+    """Least squares in all moduli of twenty cells (656 of each kind) would take far too long."""
+    shapes, plain = [], positive.nnls
+
+    def watched(matrix, *args, **options):
+        shapes.append(matrix.shape)
+        return plain(matrix, *args, **options)
+
+    monkeypatch.setattr(positive, "nnls", watched)
+    family, material = Family(20), ElasticTensor.isotropic(1.0, nu)
+    found = calibrate(family, material, "positive")
+    assert max(rows for rows, _ in shapes) <= 8
+    np.testing.assert_allclose(effective_tensor(family, found), material.voigt, atol=1e-12)
 
 
 def test_a_search_that_does_not_end_is_refused_by_name(monkeypatch):
