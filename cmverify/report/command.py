@@ -53,7 +53,13 @@ def report(
     raise typer.Exit(0 if summary.all_passed(judged) else 1)
 
 
+#: Options of `precision` that mean something with ``--measure``, or only without it.
+_MEASURED = ("level", "repeats", "method", "resolution", "overwrite")
+_FINISHED = ("quantity",)
+
+
 def precision(
+    context: typer.Context,
     names: Names = None,
     quantity: Annotated[str | None, typer.Option(help="Instead of each case's own.")] = None,
     out: Folder = Path("report"),
@@ -76,6 +82,12 @@ def precision(
     from cmverify.report import terminal
     from cmverify.studies.precision_command import measured
 
+    for name in _FINISHED if measure else _MEASURED:
+        # What would not be heard is not taken.
+        source = context.get_parameter_source(name)
+        if source is not None and source.name == "COMMANDLINE":
+            which = "of a finished run, without" if measure else "of a new study, with"
+            refuse(f"--{name} is {which} --measure")
     if measure:
         cases = chosen(names or ["work-precision"])
         measured(cases, level, repeats, method or [], resolution, out, overwrite)
