@@ -50,7 +50,7 @@ told(Scene(plate, spacing, solid, [held], m=2, cracks=[cut]).solve())
 # What each of them needs beyond those before it.
 NEEDED = {
     "heat, small": {"_span", "_mark_near", "scatter", "conductive_product", "block_scale"},
-    "elastic, small": {"elastic_product"},
+    "elastic, small": {"elastic_product", "_elastic_lanes"},
     "elastic": {"narrow", "relax", "weighted_rows"},
     "crack": {"_rest", "sign_of_cross", "side", "_touches", "_mark_tips", "_mark_lying", "_moved"}
     | {"_beside", "cuts", "_mark_cut", "_lies", "_mark_between"},
