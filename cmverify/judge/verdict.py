@@ -152,7 +152,8 @@ def _bound(case: Case, check: Check, where: tuple[int, ...], errors: list[float]
     message = _remark(value)
     if value <= least and not check.exact:
         message = f"too good to be true: this method cannot come below {least:.1g}"
-    asked = f"≤ {bound:.2g}"
+    # In as many digits as what was measured, so that what holds also reads as if it held.
+    asked = f"≤ {bound:.3g}"
     passed = 0.0 <= value <= bound if check.exact else least < value <= bound
     return Verdict(
         case.name, check.method, check.quantity, "bound", f"{case.length}/{n}", value,

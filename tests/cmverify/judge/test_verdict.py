@@ -25,6 +25,15 @@ def test_the_truth_passes_every_kind():
     assert all(v.passed for v in verdicts)
 
 
+def test_a_bound_that_holds_reads_as_if_it_held():
+    """In two digits 0.155 had become 0.15, beside 0.152 that was measured."""
+    check = Check("bond/trapezium", "integral", at_most={10: 0.155})
+    within = replace(trapezium(10), quantities={"integral": 0.152})
+    (verdict,) = judge(toy(checks=(check,)), {"bond/trapezium": {10: within}})
+    assert verdict.passed
+    assert f"{verdict.value:.3g} {verdict.asked}" == "0.152 ≤ 0.155"
+
+
 def test_one_percent_fails_the_absolute_bound_and_the_order():
     assert failed_kinds(toy(), lambda n: trapezium(n, 1.01)) == {"bound", "order"}
 
