@@ -130,6 +130,10 @@ def _invert(blocks: Array, out: Array) -> NDArray[np.int64]:
     det/|λ|_max^(c − 1).
     """
     c = len(blocks)
+    # Of size one each, or cubes of stiffnesses could leave the range of numbers.
+    size = np.abs(blocks).max(axis=(0, 1))
+    size = np.where(size > 0.0, size, 1.0)
+    blocks = blocks / size
     if c == 1:
         minors, cofactors = [blocks[0, 0]], np.ones_like(blocks)
     elif c == 2:
@@ -149,10 +153,10 @@ def _invert(blocks: Array, out: Array) -> NDArray[np.int64]:
             cofactors[2, 2],
             a * cofactors[0, 0] + b * cofactors[0, 1] + e * cofactors[0, 2],
         ]
-    size = np.sqrt((blocks * blocks).sum(axis=(0, 1)))
+    norm = np.sqrt((blocks * blocks).sum(axis=(0, 1)))
     with np.errstate(invalid="ignore", divide="ignore"):
-        np.divide(cofactors, minors[-1], out=out)
-        sound = minors[-1] > _SOUND * size**c
+        np.divide(cofactors, minors[-1] * size, out=out)
+        sound = minors[-1] > _SOUND * norm**c
     for minor in minors[:-1]:
         sound &= minor > 0.0
     return np.nonzero(~sound)[0]
