@@ -16,6 +16,23 @@ UNKNOWN = "no second case that sees it is known"
 
 #: Why one case alone sees faults, and their names.
 ALONE: dict[str, tuple[str, ...]] = {
+    "elements beside a scene are a user's: one case compares them, the others have elements of "
+    "their own": (
+        "loads of elements beside a scene + 1 %",
+        "stiffness of elements beside a scene + 1 %",
+        "what elements beside a scene are held at + 1 %",
+        "stress of elements beside a scene of the other sign",
+        "loads beside a scene left out",
+        "differences from elements halved",
+        "modes paired with the next",
+        "cross-checks that always hold",
+    ),
+    "elements in time serve users' scenes and stored references: at quick no other case calls "
+    "them": (
+        "mass of finite elements + 1 %",
+        "motion of finite elements without damping",
+        "heat capacity of finite elements in time + 1 %",
+    ),
     "other cases at quick have bodies of one solid, or judge these inclusions by what "
     "does not feel it": (
         "interfaces shifted by 2 %",
