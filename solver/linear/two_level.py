@@ -130,9 +130,9 @@ def _invert(blocks: Array, out: Array) -> NDArray[np.int64]:
     det/|λ|_max^(c − 1).
     """
     c = len(blocks)
-    # Of size one each, or cubes of stiffnesses could leave the range of numbers.
-    size = np.abs(blocks).max(axis=(0, 1))
-    size = np.where(size > 0.0, size, 1.0)
+    # Of size one each, or cubes of stiffnesses could leave the range of numbers; a power of two
+    # changes no digit.
+    size = np.ldexp(1.0, np.frexp(np.abs(blocks).max(axis=(0, 1)))[1])
     blocks = blocks / size
     if c == 1:
         minors, cofactors = [blocks[0, 0]], np.ones_like(blocks)
